@@ -1,0 +1,66 @@
+// The engine: when the stages of a frame begin and end. Three engines fill the same FrameTimes.
+//
+//   recurrence   exact departure times of MODEL section 1 (max-plus), one pass over the commands; the default
+//   events       the same system run through the event queue; the independent reference, bit for bit equal
+//   closed form  one overlap formula a frame: T = max(t_l, t_r) + s*min(t_l, t_r), MODEL section 2
+//
+// Departure times (B1, B2 FIFO capacities, n frames in flight, V vsync period), i counting commands over all frames:
+//   cpu_start[k] = max(P[last of k-1], shown[k-n])
+//   P[i]  = max(P[i-1] + submit[i], S1[i-B1])       P[i-1] is cpu_start[k] + cpu_before for the first command of k
+//   S1[i] = max(P[i], E1[i-1])
+//   E1[i] = max(S1[i] + primitive[i], S2[i-B2])
+//   S2[i] = max(E1[i], E2[i-1])
+//   E2[i] = S2[i] + pixel[i]
+//   shown[k] = E2[last of k] + swap, or with vsync max(ceil((E2 + swap)/V)*V, shown[k-1] + V)
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "sim/machine.h"
+#include "sim/units.h"
+
+namespace framesim {
+
+// One frame's work, as the engine needs it.
+struct FrameWork {
+  Picoseconds cpu_before{0};    // logic + visibility + decide + frame setup
+  Picoseconds swap{0};
+  Picoseconds vsync_period{0};  // 0 = off
+  const CommandColumns& commands;  // at least one command (the clear)
+};
+
+// Where the time between cpu_start and shown went, walked back along the binding constraints; the parts sum to the latency.
+// `backlog` is time spent behind commands of earlier frames.
+enum class Critical : std::uint8_t { cpu_before, submit, primitive, pixel, backlog, present };
+inline constexpr std::size_t kCriticalCount = 6;
+using CriticalTimes = std::array<Picoseconds, kCriticalCount>;
+
+struct FrameTimes {
+  SimTime cpu_start{0};
+  SimTime submitted{0};   // P[last]
+  SimTime first_draw{0};  // S1[first]
+  SimTime drawn{0};       // E2[last]
+  SimTime shown{0};
+  Picoseconds draw_time{0};    // E2[last] - max(S1[first], E2[last of previous frame])
+  Picoseconds frame_time{0};   // shown[k] - shown[k-1]; for k = 0, shown - cpu_start
+  Picoseconds latency{0};      // shown - cpu_start
+  CriticalTimes critical{};    // all 0 unless asked for
+};
+
+enum class EngineKind : std::uint8_t { automatic, recurrence, events, closed_form };
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  // Runs the next frame. Throws InternalError when the clock would pass 2^63 ps.
+  virtual FrameTimes run(const FrameWork& work) = 0;
+};
+
+struct EngineOptions {
+  EngineKind kind = EngineKind::automatic;  // automatic: recurrence for staged overlap, closed form otherwise
+  bool critical_path = false;               // fill FrameTimes::critical (recurrence only; others leave it 0)
+};
+std::unique_ptr<Engine> make_engine(const MachineProfile& machine, const EngineOptions& options);
+
+}  // namespace framesim

@@ -1,0 +1,92 @@
+// The machine: what really happens. Actual stage times of a draw command, from the facts of the representation drawn.
+// Policies never see it; they see an estimator (estimator.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/catalogue.h"
+#include "sim/check.h"
+#include "sim/units.h"
+#include "sim/workload.h"
+
+namespace framesim {
+
+struct Selection;
+
+// Coefficients of one rendering algorithm. All in seconds, >= 0. MODEL: per-primitive stage
+// c_draw*draws + c_polygon*polygons + c_vertex*vertices + c_texture*bytes; per-pixel stage c_pixel*A*(1 + k*A/2^20), A the
+// covered area in pixels: Robin Hood (section 4.1) measured that time is not linear in projected area.
+struct AlgorithmCosts {
+  double draw_s = 0;
+  double polygon_s = 0;
+  double vertex_s = 0;
+  double texture_byte_s = 0;
+  double pixel_s = 0;
+  double pixel_nonlinearity = 0;  // k, >= 0; 0 = linear
+};
+
+// How CPU and GPU overlap (MODEL section 2).
+enum class OverlapKind : std::uint8_t { staged, serial, paper2005, max_plus };
+struct Overlap {
+  OverlapKind kind = OverlapKind::staged;
+  double serial_share = 0;   // s of T = max + s*min; max_plus only, 0..1 (serial is 1, paper2005 is 1/3)
+  int frames_in_flight = 1;  // staged only, 1..4
+};
+// "staged", "staged:2" (frames in flight), "serial", "paper2005", "max-plus-s:0.2". Throws InputError.
+Overlap parse_overlap(std::string_view text, const InputLocation& where = {"command line"});
+std::string to_string(const Overlap& overlap);
+
+struct MachineProfile {
+  std::string name;
+  std::string source;  // where the numbers come from, and what is assumed
+  std::array<AlgorithmCosts, kAlgorithmCount> algorithm{};
+  double submit_s = 0;           // CPU, for each command
+  double submit_draw_s = 0;      // CPU, for each draw call of a command beyond the first
+  double frame_setup_s = 0;      // CPU, once a frame, before the first command
+  double clear_s = 0;            // per-pixel stage, once a frame, before the first command
+  double swap_s = 0;             // after the last command, before the frame is shown
+  double visibility_test_s = 0;  // CPU, for each bound tested
+  double operation_s = 0;        // CPU, for each operation that the policy counts
+  int primitive_fifo = 64;       // commands that wait before the per-primitive stage, >= 1 (B1)
+  int pixel_fifo = 16;           // ... and before the per-pixel stage, >= 1 (B2)
+  Overlap overlap;
+};
+
+// Actual durations of a frame's commands, in draw order. Row 0 is the clear.
+struct CommandColumns {
+  std::vector<std::int64_t> submit_ps, primitive_ps, pixel_ps;
+  std::vector<std::uint32_t> item;  // index into the workload; kClearCommand for the clear
+  void clear();
+  std::size_t size() const { return submit_ps.size(); }
+};
+inline constexpr std::uint32_t kClearCommand = 0xffffffffu;
+
+class Machine {
+ public:
+  // Validates once: throws InputError naming the profile for a negative or non-finite cost, or a FIFO below 1.
+  explicit Machine(MachineProfile profile);
+  const MachineProfile& profile() const { return profile_; }
+
+  struct StageTimes {
+    double primitive_s = 0;
+    double pixel_s = 0;
+  };
+  // Drawing `facts` on `area_px` pixels at `resolution` in (0,1]: primitives (polygons, vertices, texture) scale with it;
+  // draws scale as `draws_issued` says.
+  StageTimes draw_time(const Facts& facts, double area_px, double resolution, bool draws_scale_below_knee) const;
+
+  // Appends the clear and one command for each drawn item, in item order.
+  void command(const Workload& workload, const Selection& selection, CommandColumns& commands) const;
+
+ private:
+  MachineProfile profile_;
+};
+
+// Draw calls that are really issued for a continuous representation at `resolution`: all, or below the knee as many as
+// there are primitives to show.
+double draws_issued(const Facts& facts, double resolution, bool draws_scale_below_knee);
+
+}  // namespace framesim

@@ -1,0 +1,45 @@
+// From frame records to one row of the error table. Pure functions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/frame_record.h"
+
+namespace framesim {
+
+// X(name, unit, meaning): the numeric columns of the error table, once. Times in seconds.
+#define FRAMESIM_SUMMARY_COLUMNS(X)                                                                          \
+  X(frames, "", "frames measured")                                                                           \
+  X(mean_s, "s", "mean frame time")                                                                          \
+  X(stddev_s, "s", "standard deviation of frame time (n-1)")                                                 \
+  X(avg_err, "", "AvgErr = mean(|T - target|) / target (Robin Hood 2005; 1 means 100 % off)")                \
+  X(bias, "", "(mean - target) / target; negative is under the target")                                      \
+  X(p95_s, "s", "95th percentile of frame time")                                                             \
+  X(p99_s, "s", "99th percentile of frame time")                                                             \
+  X(over_target, "", "share of frames longer than the target")                                               \
+  X(benefit_share, "", "common benefit over that of everything visible at its finest, mean over frames")     \
+  X(switches, "", "level switches per frame")                                                                \
+  X(operations, "", "operations counted by the policy per frame")                                            \
+  X(estimator_error, "", "mean |t_act - t_est| / t_act of the drawing time (Dong et al. 2015, eq. 10)")      \
+  X(latency_s, "s", "mean latency: CPU start to shown")
+
+struct Summary {
+#define X(name, unit, meaning) double name = 0;
+  FRAMESIM_SUMMARY_COLUMNS(X)
+#undef X
+};
+
+struct SummaryColumn {
+  std::string_view name, unit, meaning;
+  double Summary::*value;
+};
+std::span<const SummaryColumn> summary_columns();
+
+// Frame 0 fills the pipeline and is left out of the statistics when there is more than one frame.
+Summary summarise(std::span<const FrameRecord> records, double target_s);
+
+}  // namespace framesim

@@ -1,0 +1,31 @@
+// Counter-based random numbers (Random123's Philox 4x32-10): a draw is a pure function of (seed, stream name, frame,
+// command), so that switching one effect on moves no other effect's draws, and any draw can be made alone, in any order.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace framesim {
+
+class RandomStream {
+ public:
+  // `name` is the effect's (or generator's) registered name; streams of different names are independent.
+  RandomStream(std::uint64_t seed, std::string_view name);
+
+  // 64 uniform bits for (frame, index, lane); lane tells draws of one command apart.
+  std::uint64_t bits(std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
+  // Uniform in (0,1): (bits >> 11 + 1/2) * 2^-53; never 0 or 1, so its logarithm is finite.
+  double uniform(std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
+  // Uniform in [low, high).
+  double uniform(double low, double high, std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
+  // Standard normal by inverse transform (Wichura 1988, AS 241, 16 digits): one draw, one number, monotone in the bits.
+  double normal(std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
+
+ private:
+  std::uint64_t key_;
+};
+
+// Quantile function of the standard normal, p in (0,1); relative error about 1e-16 (Wichura 1988, AS 241 PPND16).
+double normal_quantile(double p);
+
+}  // namespace framesim

@@ -1,0 +1,71 @@
+// One run: a scene under a policy on a machine. `Simulation::step` is one frame as a list of its stages; read it first.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/effect.h"
+#include "sim/engine.h"
+#include "sim/estimator.h"
+#include "sim/frame_record.h"
+#include "sim/planner.h"
+#include "sim/policy.h"
+#include "sim/stage_graph.h"
+#include "sim/workload.h"
+
+namespace framesim {
+
+struct SimulationConfig {
+  double target_s = 0.025;
+  EngineOptions engine;
+  bool check_selections = false;  // find_fault() on every frame; a fault is an InternalError
+};
+
+// The parts of a run. All must outlive the simulation.
+struct SimulationParts {
+  WorkloadSource& scene;
+  Policy& policy;
+  const Planner& planner;
+  Estimator& estimator;
+  const Machine& machine;
+  const LogicLoad& logic;
+  std::vector<const Effect*> effects;  // active ones only, in the order they apply
+};
+
+class Simulation {
+ public:
+  // Prepares estimator and policy for the scene.
+  Simulation(const SimulationParts& parts, const SimulationConfig& config);
+
+  std::int64_t frames() const;
+  // Runs the next frame. No allocation once every vector has met its largest frame.
+  const FrameRecord& step();
+
+  // What the last frame was about, for those who draw or test it.
+  const Workload& workload() const { return workload_; }
+  const Selection& selection() const { return selection_; }
+  const StageGraph& stages() const { return stages_; }
+
+ private:
+  double plan(std::int64_t visible);
+  void record_selection();
+  void remember_levels();
+
+  SimulationParts parts_;
+  SimulationConfig config_;
+  PolicyTraits traits_;
+  StageGraph stages_;
+  std::unique_ptr<Engine> engine_;
+  std::vector<double> complexity_s_;
+  std::int64_t next_frame_ = 0;
+  Workload workload_;
+  Selection selection_;
+  CommandColumns commands_;
+  FrameRecord record_;
+  double last_decide_s_ = 0;
+  std::vector<std::int32_t> last_level_;   // an instance: level code in the last frame it was visible
+  std::vector<std::int64_t> last_seen_;    // an instance: that frame, or -1
+};
+
+}  // namespace framesim

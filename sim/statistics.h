@@ -1,0 +1,41 @@
+// Sums and moments that keep their digits.
+//
+// Never E[x^2] - mean^2: on 600 frame times near 16.67 ms with 50 ns deviation that is wrong by 4e11 ulp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace framesim {
+
+// Sum with Neumaier's compensation: error independent of the number of terms (2 ulp of the sum plus n^2 eps^2 of |terms|).
+class CompensatedSum {
+ public:
+  void add(double x);
+  double value() const { return sum_ + correction_; }
+
+ private:
+  double sum_ = 0;
+  double correction_ = 0;
+};
+
+// Mean and standard deviation by Welford's update.
+class Moments {
+ public:
+  void add(double x);
+  std::int64_t count() const { return count_; }
+  double mean() const { return mean_; }         // 0 if empty
+  double deviation() const;                     // sample standard deviation (n-1); 0 for fewer than two
+
+ private:
+  std::int64_t count_ = 0;
+  double mean_ = 0;
+  double squares_ = 0;
+};
+
+// The p-quantile (p in [0,1]) with linear interpolation between order statistics at h = (n-1)p (Hyndman and Fan 1996,
+// type 7, as R, NumPy and PresentMon's readers do). `sorted` ascending and not empty.
+double quantile(std::span<const double> sorted, double p);
+
+}  // namespace framesim
