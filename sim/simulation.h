@@ -37,6 +37,8 @@ class Simulation {
  public:
   // Prepares estimator and policy for the scene.
   Simulation(const SimulationParts& parts, const SimulationConfig& config);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
   std::int64_t frames() const;
   // Runs the next frame. No allocation once every vector has met its largest frame.
@@ -48,9 +50,15 @@ class Simulation {
   const StageGraph& stages() const { return stages_; }
 
  private:
-  double plan(std::int64_t visible);
-  void record_selection();
-  void remember_levels();
+  // The stages of step(), in its order.
+  void see();
+  void run_logic();
+  double plan_budget() const;
+  void decide(double budget_s);
+  void draw();
+  void record_quality();
+  void record_switches();
+  void tell();
 
   SimulationParts parts_;
   SimulationConfig config_;
@@ -62,10 +70,12 @@ class Simulation {
   Workload workload_;
   Selection selection_;
   CommandColumns commands_;
+  FrameSettings settings_;
   FrameRecord record_;
-  double last_decide_s_ = 0;
-  std::vector<std::int32_t> last_level_;   // an instance: level code in the last frame it was visible
-  std::vector<std::int64_t> last_seen_;    // an instance: that frame, or -1
+  double last_decide_s_ = 0;               // the planner's estimate of the coming decision
+  std::vector<std::int16_t> last_level_;   // an instance: its level when last visible
+  std::vector<std::int64_t> last_seen_;    // ... and that frame, or -1
+  std::vector<std::uint16_t> height_;      // hierarchies: levels of nodes below an item
 };
 
 }  // namespace framesim

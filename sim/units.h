@@ -16,10 +16,12 @@ using Picoseconds = std::chrono::duration<std::int64_t, std::pico>;
 // A point in simulated time, counted from the start of the run.
 using SimTime = Picoseconds;
 
-// Seconds as double, for reports and for policies. Exact up to 2^53 ps (2.5 hours), then rounded to nearest.
-constexpr double to_seconds(Picoseconds t) { return static_cast<double>(t.count()) * 1e-12; }
+// Seconds as double, for reports and for policies: rounded to nearest up to 2^53 ps (2.5 hours). Divided, not multiplied by
+// 1e-12, which no double equals.
+constexpr double to_seconds(Picoseconds t) { return static_cast<double>(t.count()) / 1e12; }
 
-// `seconds` rounded up to a whole picosecond; a negative or NaN value, or one beyond `kLongestDuration`, is a broken
+// `seconds` rounded up to a whole picosecond (a whole number of picoseconds written as a decimal stays that number, although
+// its double may lie a hair above); a negative or NaN value, or one beyond `kLongestDuration`, is a broken
 // invariant and throws InternalError (see check.h) naming the value.
 Picoseconds ceil_picoseconds(double seconds);
 

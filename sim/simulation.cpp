@@ -1,0 +1,218 @@
+#include "sim/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/benefit.h"
+#include "sim/statistics.h"
+
+namespace framesim {
+
+namespace {
+
+// All types project this share of the screen when they are ordered by complexity (Robin Hood 2005, section 5.1).
+constexpr double kComplexityArea = 0.01;
+
+// The rung of the stand-in ladder 1, 1/2, 1/4 ... that a resolution reaches, so that level switches of continuous and
+// discrete levels count the same thing.
+std::int16_t rung(double resolution, int rungs) {
+  int level = rungs - 1;
+  for (double x = resolution; x < 1 && level > 0; x *= 2) --level;
+  return static_cast<std::int16_t>(level);
+}
+
+std::int16_t level_code(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (selection.level[item] == kNotDrawn || workload.kind[item] != ItemKind::curve) return selection.level[item];
+  return rung(selection.resolution[item], workload.type_of(item).stand_in_levels);
+}
+
+// Where a drawn item stands between its coarsest (0) and finest (1) choice.
+double fineness(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (workload.kind[item] == ItemKind::curve) return selection.resolution[item];
+  const std::size_t levels = workload.levels(item);
+  const double part = selection.resolution[item];
+  if (levels == 1) return part;
+  return part * selection.level[item] / static_cast<double>(levels - 1);
+}
+
+}  // namespace
+
+Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& config)
+    : parts_(parts), config_(config), traits_(parts.policy.traits()), stages_(parts.logic.tasks) {
+  FRAMESIM_CHECK(std::isfinite(config_.target_s) && config_.target_s > 0, fmt::format("target {} s", config_.target_s));
+  const SceneFacts& scene = parts_.scene.scene();
+  engine_ = make_engine(parts_.machine.profile(), config_.engine);
+  parts_.estimator.prepare(parts_.machine, parts_.logic, scene);
+  for (const ObjectType& type : scene.types) {
+    complexity_s_.push_back(parts_.estimator.cost_s(type.levels.back(), kComplexityArea * scene.screen_px));
+  }
+  parts_.policy.prepare({.types = scene.types,
+                         .complexity_s = complexity_s_,
+                         .instances = scene.instances,
+                         .screen_px = scene.screen_px});
+  last_level_.assign(scene.instances, kNotDrawn);
+  last_seen_.assign(scene.instances, -1);
+}
+
+std::int64_t Simulation::frames() const { return parts_.scene.scene().frames; }
+
+// One frame, in order.
+const FrameRecord& Simulation::step() {
+  FRAMESIM_CHECK(next_frame_ < frames(), fmt::format("the scene has {} frames", frames()));
+  record_ = {};
+  record_.frame = next_frame_;
+  see();
+  run_logic();
+  decide(plan_budget());
+  draw();
+  record_quality();
+  record_switches();
+  tell();
+  ++next_frame_;
+  return record_;
+}
+
+// Visibility: what can be seen, what it would cost by the estimator, what it is worth.
+void Simulation::see() {
+  const VisibilityCounts counts = parts_.scene.fill(record_.frame, traits_.request, workload_);
+  parts_.estimator.price(workload_);
+  score(workload_);
+  record_.visibility_tests = counts.tests;
+  record_.visible = counts.visible;
+  record_.visibility_ps =
+      ceil_picoseconds(static_cast<double>(counts.tests) * parts_.machine.profile().visibility_test_s).count();
+}
+
+void Simulation::run_logic() {
+  const LogicLoad& logic = parts_.logic;
+  settings_ = {.frame = record_.frame};
+  settings_.logic =
+      ceil_picoseconds(logic.base_s + logic.per_item_s * static_cast<double>(record_.visible)) + stages_.task_time();
+  for (const Effect* effect : parts_.effects) {
+    if (has(effect->hooks(), Hook::frame | Hook::present)) effect->on_frame(settings_);
+  }
+  record_.logic_ps = settings_.logic.count();
+}
+
+double Simulation::plan_budget() const {
+  const MachineProfile& machine = parts_.machine.profile();
+  return parts_.planner.budget_s(
+      {.target_s = config_.target_s,
+       .before_draw_s = parts_.estimator.logic_s(record_.visible) + to_seconds(Picoseconds(record_.visibility_ps)) +
+                        last_decide_s_ + machine.frame_setup_s,
+       .submit_s = machine.submit_s * static_cast<double>(record_.visible),
+       .fixed_gpu_s = machine.clear_s + machine.swap_s,
+       .overlap = machine.overlap});
+}
+
+void Simulation::decide(double budget_s) {
+  record_.budget_s = budget_s;
+  selection_.reset(workload_.size());
+  parts_.policy.select(
+      {.frame = record_.frame, .target_s = config_.target_s, .budget_s = budget_s, .workload = workload_}, selection_);
+  if (config_.check_selections) {
+    const auto fault = find_fault(workload_, selection_);
+    FRAMESIM_CHECK(!fault, fmt::format("frame {}: {}", record_.frame, *fault));
+  }
+  record_.planned_cost_s = selection_.planned_cost_s;
+  record_.operations = selection_.operations;
+  last_decide_s_ = static_cast<double>(selection_.operations) * parts_.machine.profile().operation_s;
+  record_.decide_ps = ceil_picoseconds(last_decide_s_).count();
+}
+
+// Submission and the two GPU stages, then the present.
+void Simulation::draw() {
+  const MachineProfile& machine = parts_.machine.profile();
+  commands_.clear();
+  parts_.machine.command(workload_, selection_, commands_);
+  for (const Effect* effect : parts_.effects) {
+    if (has(effect->hooks(), Hook::commands)) effect->on_commands(record_.frame, commands_);
+  }
+  const Picoseconds cpu_before = settings_.logic + Picoseconds(record_.visibility_ps) + Picoseconds(record_.decide_ps) +
+                                 ceil_picoseconds(machine.frame_setup_s);
+  const FrameTimes times = engine_->run({.cpu_before = cpu_before,
+                                         .swap = ceil_picoseconds(machine.swap_s),
+                                         .vsync_period = settings_.vsync_period,
+                                         .commands = commands_});
+  record_.cpu_start_ps = times.cpu_start.count();
+  record_.submitted_ps = times.submitted.count();
+  record_.drawn_ps = times.drawn.count();
+  record_.shown_ps = times.shown.count();
+  record_.draw_time_ps = times.draw_time.count();
+  record_.frame_time_ps = times.frame_time.count();
+  record_.latency_ps = times.latency.count();
+  const auto critical = [&](Critical part) { return times.critical[static_cast<std::size_t>(part)].count(); };
+  record_.critical_cpu_ps = critical(Critical::cpu_before);
+  record_.critical_submit_ps = critical(Critical::submit);
+  record_.critical_primitive_ps = critical(Critical::primitive);
+  record_.critical_pixel_ps = critical(Critical::pixel);
+  record_.critical_backlog_ps = critical(Critical::backlog);
+  record_.critical_present_ps = critical(Critical::present);
+}
+
+// Benefit, and how detailed the picture is. In a hierarchy a drawn node stands for its subtree.
+void Simulation::record_quality() {
+  const bool tree = workload_.hierarchical();
+  const std::size_t n = workload_.size();
+  if (tree) {
+    height_.assign(n, 0);
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t c = i + 1; c < workload_.subtree_end[i]; c = workload_.subtree_end[c]) {
+        height_[i] = std::max<std::uint16_t>(height_[i], static_cast<std::uint16_t>(height_[c] + 1));
+      }
+    }
+  }
+  record_.benefit = selection_.planned_benefit;
+  CompensatedSum finest;
+  std::uint16_t tallest = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool leaf = !tree || height_[i] == 0;
+    if (leaf && workload_.kind[i] != ItemKind::bundle) finest.add(workload_.benefit[workload_.finest(i)]);
+    if (tree) tallest = std::max(tallest, height_[i]);
+  }
+  record_.finest_benefit = finest.value();
+  for (std::size_t i = 0; i < n;) {
+    const bool leaf = !tree || height_[i] == 0;
+    if (selection_.level[i] == kNotDrawn) {
+      if (leaf && workload_.kind[i] != ItemKind::bundle) ++record_.mix_none;
+      ++i;
+      continue;
+    }
+    double d = fineness(workload_, selection_, i);
+    if (!leaf) d *= 1 - static_cast<double>(height_[i]) / (tallest + 1);
+    ++record_.drawn;
+    ++(d >= 1 ? record_.mix_finest : d >= 2.0 / 3 ? record_.mix_fine : d >= 1.0 / 3 ? record_.mix_middle : record_.mix_coarse);
+    i = tree ? workload_.subtree_end[i] : i + 1;
+  }
+}
+
+void Simulation::record_switches() {
+  for (std::size_t i = 0; i < workload_.size(); ++i) {
+    const std::size_t id = index(workload_.id[i]);
+    const std::int16_t level = level_code(workload_, selection_, i);
+    if (record_.frame > 0 && last_seen_[id] == record_.frame - 1 && last_level_[id] != level) ++record_.switches;
+    last_level_[id] = level;
+    last_seen_[id] = record_.frame;
+  }
+}
+
+// The only two messages that flow back.
+void Simulation::tell() {
+  const double draw_time_s = to_seconds(Picoseconds(record_.draw_time_ps));
+  parts_.policy.observe({.frame = record_.frame,
+                         .target_s = config_.target_s,
+                         .budget_s = record_.budget_s,
+                         .frame_time_s = to_seconds(Picoseconds(record_.frame_time_ps)),
+                         .draw_time_s = draw_time_s,
+                         .planned_cost_s = record_.planned_cost_s,
+                         .workload = workload_,
+                         .selection = selection_});
+  parts_.estimator.correct({.estimated_draw_s = record_.planned_cost_s,
+                            .actual_draw_s = draw_time_s,
+                            .actual_logic_s = to_seconds(Picoseconds(record_.logic_ps)),
+                            .visible = record_.visible});
+}
+
+}  // namespace framesim
