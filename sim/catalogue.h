@@ -33,9 +33,10 @@ struct Facts {
   double draws = 1;          // draw calls that one command stands for (a group of 64 trees: 64)
   double coverage = 1;       // share of the item's projected area that is rasterised, 0..1
   double benefit_weight = 1; // model-specific factor: 2^(dmax-d) of a terrain patch, number of trees of a group
+  double resolution = 1;     // x of a level that stands in for a continuous representation; all counts are at x already
   Algorithm algorithm = Algorithm::gouraud;
-  std::optional<double> stated_cost_s;   // GPU time stated outright, instead of facts; > 0
-  std::optional<double> stated_benefit;  // benefit stated outright, instead of a model; >= 0
+  std::optional<double> stated_cost_s{};   // GPU time stated outright, instead of facts; > 0
+  std::optional<double> stated_benefit{};  // benefit stated outright, instead of a model; >= 0
 };
 
 // How the benefit of a continuous representation grows with its resolution x in [0,1]; b(x) = b(1) * shape(x).

@@ -16,6 +16,9 @@ namespace framesim {
 // What the logic of a frame costs: base + per_item * visible items + the longest path through the declared tasks.
 struct LogicLoad;
 
+// No estimate is less: one picosecond, the resolution of simulated time. It keeps ratios of benefit to cost finite.
+inline constexpr double kSmallestCostS = 1e-12;
+
 // What an estimator is told after a frame. Seconds.
 struct EstimateOutcome {
   double estimated_draw_s = 0;  // what it said the drawn selection would cost

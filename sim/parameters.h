@@ -71,6 +71,13 @@ std::string show_allowed(ValueKind kind, const ParameterLimits& limits);
 [[noreturn]] void unknown_parameter(const Setting& setting, const std::vector<std::string_view>& known);
 }  // namespace detail
 
+// g++ takes each alternative of Member as reachable, and warns of reading past records that are smaller than one of them.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 template <class Record>
 class ParameterTable {
  public:
@@ -128,5 +135,9 @@ class ParameterTable {
 
   std::vector<Entry> entries_;
 };
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 }  // namespace framesim

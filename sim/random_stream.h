@@ -14,7 +14,8 @@ class RandomStream {
 
   // 64 uniform bits for (frame, index, lane); lane tells draws of one command apart.
   std::uint64_t bits(std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
-  // Uniform in (0,1): (bits >> 11 + 1/2) * 2^-53; never 0 or 1, so its logarithm is finite.
+  // Uniform in (0,1): ((bits >> 12) + 1/2) * 2^-52; never 0 or 1, so its logarithm is finite. (With one bit more, the half
+  // would not fit into the double and the largest draw would round to 1.)
   double uniform(std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;
   // Uniform in [low, high).
   double uniform(double low, double high, std::uint64_t frame, std::uint32_t index, std::uint32_t lane = 0) const;

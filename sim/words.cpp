@@ -37,12 +37,14 @@ bool begins_with(std::string_view text, std::string_view beginning) {
 }  // namespace
 
 std::string quoted(std::string_view text) {
+  std::size_t length = std::min(text.size(), kMostShown);
+  while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
   std::string shown = "'";
-  for (const char c : text.substr(0, kMostShown)) {
+  for (const char c : text.substr(0, length)) {
     const auto code = static_cast<unsigned char>(c);
     shown += code < 0x20 || code == 0x7f ? '?' : c;
   }
-  return shown + (text.size() > kMostShown ? "...'" : "'");
+  return shown + (length < text.size() ? "...'" : "'");
 }
 
 std::string list_of(std::span<const std::string_view> words) {
