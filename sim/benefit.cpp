@@ -23,10 +23,22 @@ double accuracy(const Facts& facts, double area_px) {
   return 1 - kBaseError / (smooth ? samples * samples : samples);
 }
 
+// A stand-in for resolution x is worth what the curve is worth there (workload.h, curve_benefit): b(1) * shape(x).
+double stand_in_benefit(const Facts& facts, const ObjectType& type, double area_px) {
+  Facts whole = facts;
+  whole.resolution = 1;
+  for (double Facts::*count : {&Facts::polygons, &Facts::vertices, &Facts::lines, &Facts::points}) {
+    whole.*count /= facts.resolution;
+  }
+  const double shape = type.shape == CurveShape::linear ? facts.resolution : std::sqrt(facts.resolution);
+  return shape * benefit(whole, type, area_px);
+}
+
 }  // namespace
 
 double benefit(const Facts& facts, const ObjectType& type, double area_px) {
   if (facts.stated_benefit) return *facts.stated_benefit;
+  if (facts.resolution < 1) return stand_in_benefit(facts, type, area_px);
   switch (type.benefit) {
     case BenefitModel::funkhouser: return area_px * accuracy(facts, area_px) * type.importance;
     case BenefitModel::zach_terrain: return std::sqrt(facts.benefit_weight * area_px);

@@ -24,9 +24,9 @@ namespace framesim {
 
 // One frame's work, as the engine needs it.
 struct FrameWork {
-  Picoseconds cpu_before{0};    // logic + visibility + decide + frame setup
+  Picoseconds cpu_before{0};  // logic + visibility + decide + frame setup
   Picoseconds swap{0};
-  Picoseconds vsync_period{0};  // 0 = off
+  Picoseconds vsync_period{0};     // 0 = off
   const CommandColumns& commands;  // at least one command (the clear)
 };
 
@@ -42,10 +42,10 @@ struct FrameTimes {
   SimTime first_draw{0};  // S1[first]
   SimTime drawn{0};       // E2[last]
   SimTime shown{0};
-  Picoseconds draw_time{0};    // E2[last] - max(S1[first], E2[last of previous frame])
-  Picoseconds frame_time{0};   // shown[k] - shown[k-1]; for k = 0, shown - cpu_start
-  Picoseconds latency{0};      // shown - cpu_start
-  CriticalTimes critical{};    // all 0 unless asked for
+  Picoseconds draw_time{0};   // E2[last] - max(S1[first], E2[last of previous frame])
+  Picoseconds frame_time{0};  // shown[k] - shown[k-1]; for k = 0, shown - cpu_start
+  Picoseconds latency{0};     // shown - cpu_start
+  CriticalTimes critical{};   // all 0 unless asked for
 };
 
 enum class EngineKind : std::uint8_t { automatic, recurrence, events, closed_form };
@@ -61,6 +61,8 @@ struct EngineOptions {
   EngineKind kind = EngineKind::automatic;  // automatic: recurrence for staged overlap, closed form otherwise
   bool critical_path = false;               // fill FrameTimes::critical (recurrence only; others leave it 0)
 };
+// The stages and FIFOs of `machine` are there under any overlap, so `recurrence` and `events` run on every profile;
+// `closed_form` needs one whose overlap is a formula (InternalError otherwise).
 std::unique_ptr<Engine> make_engine(const MachineProfile& machine, const EngineOptions& options);
 
 }  // namespace framesim

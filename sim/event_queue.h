@@ -3,6 +3,8 @@
 // Events are taken in ascending (time, phase, sequence): earlier time first; at one time, the phase declared first
 // (departures free a place before arrivals claim it); within a phase, the event scheduled first. `sequence` is given
 // out by `schedule`, so the order is total and repeats exactly.
+//
+// The queue is a value: a copy is a checkpoint, with its own clock, that can be run on or gone back to.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +30,7 @@ class EventQueue {
   void schedule(SimTime time, Phase phase, std::uint64_t payload);
   bool empty() const { return heap_.empty(); }
   std::size_t size() const { return heap_.size(); }
-  // The next event; the queue must not be empty.
+  // The next event; throws InternalError if there is none.
   Event take();
   SimTime now() const { return now_; }
   std::uint64_t taken() const { return taken_; }

@@ -52,7 +52,7 @@ struct MachineProfile {
   double operation_s = 0;        // CPU, for each operation that the policy counts
   int primitive_fifo = 64;       // commands that wait before the per-primitive stage, >= 1 (B1)
   int pixel_fifo = 16;           // ... and before the per-pixel stage, >= 1 (B2)
-  Overlap overlap;
+  Overlap overlap{};
 };
 
 // Actual durations of a frame's commands, in draw order. Row 0 is the clear.

@@ -16,7 +16,7 @@ struct PlanInput {
   double before_draw_s = 0;  // CPU time before the first command: logic, visibility, decision, frame setup
   double submit_s = 0;       // CPU time to submit the commands
   double fixed_gpu_s = 0;    // clear and swap
-  Overlap overlap;
+  Overlap overlap{};
 };
 
 class Planner {

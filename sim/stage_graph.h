@@ -41,7 +41,8 @@ class StageGraph {
   // with the name of a stage.
   explicit StageGraph(const std::vector<LogicTask>& tasks);
 
-  // All nodes (tasks and stages) in one topological order; ties by order of declaration.
+  // All nodes (tasks and stages) in one topological order; ties by order of declaration: nodes come in order of number, each
+  // right after those of the nodes it waits for that have not come yet. Numbers: the tasks as declared, then the stages.
   const std::vector<int>& order() const { return order_; }
   const std::string& name(int node) const { return names_[static_cast<std::size_t>(node)]; }
   int node(Stage stage) const;

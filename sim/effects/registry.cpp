@@ -1,0 +1,26 @@
+#include <vector>
+
+#include "sim/effect.h"
+
+namespace framesim {
+
+// One line an effect: the function of its file that makes its entry. Effects apply in this order.
+// clang-format off
+#define FRAMESIM_EFFECTS(effect) \
+  effect(logic_spikes_effect)    \
+  effect(jitter_effect)          \
+  effect(vsync_effect)
+// clang-format on
+
+#define FRAMESIM_DECLARE(effect) EffectEntry effect();
+FRAMESIM_EFFECTS(FRAMESIM_DECLARE)
+#undef FRAMESIM_DECLARE
+
+std::span<const EffectEntry> effects() {
+#define FRAMESIM_CALL(effect) effect(),
+  static const std::vector<EffectEntry> entries = {FRAMESIM_EFFECTS(FRAMESIM_CALL)};
+#undef FRAMESIM_CALL
+  return entries;
+}
+
+}  // namespace framesim

@@ -1,0 +1,78 @@
+// The drawing time at which the machine's own overlap (MODEL section 2) gives exactly the target.
+//
+//   staged, one frame in flight    before_draw + fixed + t_r = target: the CPU starts when the last frame is shown, and
+//   the
+//                                  GPU waits for the first command. Submission runs beside drawing. If submission alone
+//                                  is longer than what is left, less drawing does not make the frame shorter: same
+//                                  budget.
+//   staged, more in flight         fixed + t_r = target: frames follow one another at the pace of the slower of CPU and
+//   GPU.
+//                                  If the CPU is the slower (before_draw + submit > target) the target is missed
+//                                  whatever is drawn, and drawing for a whole target still costs nothing: same budget.
+//   closed forms, T = max + s*min  t_r = target - s*t_l if that is >= t_l, else (target - t_l)/s; 0 if t_l >= target.
+//                                  t_r contains the fixed part.
+//
+// The fixed GPU time (clear, swap) is taken off throughout. Known failure: it is exact for the estimates that it is
+// given, and takes the GPU's time for the sum of the draws' (see estimators/oracle.cpp); nothing is kept in reserve for
+// errors.
+#include <algorithm>
+
+#include "sim/planner.h"
+
+namespace framesim {
+
+namespace {
+
+struct NoParameters {};
+
+const ParameterTable<NoParameters>& parameters() {
+  static const ParameterTable<NoParameters> kTable{{}};
+  return kTable;
+}
+
+double serial_share(const Overlap& overlap) {
+  switch (overlap.kind) {
+    case OverlapKind::serial:
+      return 1;
+    case OverlapKind::paper2005:
+      return 1.0 / 3;
+    default:
+      return overlap.serial_share;
+  }
+}
+
+// The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]; s = 0 never
+// divides: then t_l < target makes the first form apply.
+double closed_form_inverse(double logic_s, double target_s, double share) {
+  if (logic_s >= target_s) return 0;
+  const double draw_longer = target_s - share * logic_s;
+  return draw_longer >= logic_s ? draw_longer : (target_s - logic_s) / share;
+}
+
+double drawing_time(const PlanInput& input) {
+  if (input.overlap.kind != OverlapKind::staged) {
+    return closed_form_inverse(input.before_draw_s + input.submit_s, input.target_s, serial_share(input.overlap));
+  }
+  return input.overlap.frames_in_flight > 1 ? input.target_s : input.target_s - input.before_draw_s;
+}
+
+class InversePlanner final : public Planner {
+ public:
+  double budget_s(const PlanInput& input) const override {
+    return std::clamp(drawing_time(input) - input.fixed_gpu_s, 0.0, input.target_s);
+  }
+};
+
+}  // namespace
+
+PlannerEntry inverse_planner() {
+  return {.name = "inverse",
+          .summary = "the drawing time at which the machine's overlap of CPU and GPU gives exactly the target",
+          .parameters = parameters().describe(),
+          .make = [](const Settings& settings) -> std::unique_ptr<Planner> {
+            parameters().read(settings);
+            return std::make_unique<InversePlanner>();
+          }};
+}
+
+}  // namespace framesim

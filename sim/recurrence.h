@@ -1,0 +1,48 @@
+// The staged pipeline as its exact max-plus recurrence (equations in engine.h): O(commands) a frame, a handful of additions
+// and maxima a command, no allocation once the longest frame has been met.
+//
+// Exact for FIFO stages with blocking after service. Not for orders that depend on time across streams (arbitration of a
+// shared bus, preemption): those need the event engine.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/engine.h"
+
+namespace framesim {
+
+class StagedRecurrence final : public Engine {
+ public:
+  // Uses primitive_fifo, pixel_fifo and overlap.frames_in_flight of `machine`.
+  explicit StagedRecurrence(const MachineProfile& machine, bool critical_path = false);
+
+  // Throws InternalError naming the simulated time if the clock would pass 2^63 ps, for a negative duration and for a frame
+  // without commands. After a throw the engine must not be used again.
+  FrameTimes run(const FrameWork& work) override;
+
+ private:
+  // The last departures of stage starts, as many as the FIFO holds: the entry at `next` is the one that the next command
+  // waits for. Time 0 stands for "no such command": it delays nothing.
+  struct Ring {
+    std::vector<std::int64_t> time;
+    std::size_t next = 0;
+  };
+
+  template <bool kTrace>
+  void run_commands(const CommandColumns& commands, FrameTimes& times);
+  void trace_critical_path(const FrameWork& work, FrameTimes& times);
+
+  bool critical_path_;
+  Ring primitive_starts_;            // S1 of the last B1 commands
+  Ring pixel_starts_;                // S2 of the last B2 commands
+  Ring shown_;                       // of the last n frames
+  std::vector<std::uint8_t> bound_;  // a command of this frame: what bound its departures (critical path only)
+  std::int64_t submitted_ = 0;       // P of the last command
+  std::int64_t primitive_end_ = 0;   // E1 of the last command
+  std::int64_t pixel_end_ = 0;       // E2 of the last command
+  std::int64_t last_shown_ = 0;
+  std::int64_t frame_ = 0;
+};
+
+}  // namespace framesim
