@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/check.h"
 
 namespace framesim {
 
@@ -34,10 +35,16 @@ struct LegLength {
   std::optional<double> step;
 };
 
-// Each appends the leg's poses. A leg that follows another starts one step after its last pose.
-void append_leg(std::vector<Pose>& poses, const PolylineLeg& leg, const LegLength& length);
-void append_leg(std::vector<Pose>& poses, const SplineLeg& leg, const LegLength& length);
-void append_leg(std::vector<Pose>& poses, const TurnLeg& leg, const LegLength& length);
+// More frames than this are refused before they are made.
+inline constexpr std::int64_t kMostFrames = 1'000'000;
+
+// Each appends the leg's poses. The first leg's first pose is at its start; a later leg begins one step after its own
+// start, which is normally where the leg before it ended. With `frames` the last pose is exactly at the leg's end; with
+// `step` it is the last whole step. Throws InputError at `where` for fewer than two points, points that coincide, a path
+// through `look_at`, a turn by 0 or as the first leg, a step longer than the leg, more than kMostFrames poses in all.
+void append_leg(std::vector<Pose>& poses, const PolylineLeg& leg, const LegLength& length, const InputLocation& where = {});
+void append_leg(std::vector<Pose>& poses, const SplineLeg& leg, const LegLength& length, const InputLocation& where = {});
+void append_leg(std::vector<Pose>& poses, const TurnLeg& leg, const LegLength& length, const InputLocation& where = {});
 
 // Pose looking from `eye` along `forward` (not 0), up as near to +y as it can be.
 Pose make_pose(const glm::dvec3& eye, const glm::dvec3& forward);

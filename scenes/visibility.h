@@ -26,6 +26,9 @@ Frustum make_frustum(const Pose& pose, const Screen& screen);
 // focal length f in pixels, at most the whole screen; the whole screen when the eye is inside the sphere; 0 when the sphere
 // is wholly behind the eye (z <= -r).
 double projected_area_px(double radius_m, double distance_m, double depth_m, const Screen& screen);
+// Focal length in pixels, and the same area with it and the screen's pixels given, for loops over many items.
+double focal_length_px(const Screen& screen);
+double projected_area_px(double radius_m, double distance_m, double depth_m, double focal_px, double screen_px);
 
 class Visibility {
  public:
@@ -36,5 +39,9 @@ class Visibility {
 };
 // The method that the scene asks for. `scene` must outlive it.
 std::unique_ptr<Visibility> make_visibility(const Scene& scene);
+
+// Fills scene.cell_visibility: from each cell `samples` random sight lines out through its portals, followed from cell to
+// cell until they meet a wall (SRGGE 2020, section 2). What one cell sees of another counts for both. Same seed, same bits.
+void make_cell_visibility(Scene& scene, int samples, std::uint64_t seed);
 
 }  // namespace framesim

@@ -1,0 +1,31 @@
+// A comparison: every policy on every scene at every target.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/batch.h"
+#include "experiments/options.h"
+
+namespace framesim {
+
+// Scenes with more instances than this run only their first kFramesOfLargeScene frames unless --frames says otherwise,
+// so that a comparison without arguments stays under a minute.
+inline constexpr std::size_t kLargeScene = 100'000;
+inline constexpr std::int64_t kFramesOfLargeScene = 100;
+
+struct ComparisonOptions {
+  std::vector<std::string> scenes;    // empty: all built-in ones
+  std::vector<std::string> policies;  // empty: all
+  std::vector<std::string> targets;   // empty: each scene's first; "all": each scene's own list
+  SharedOptions shared;
+};
+
+// The options that say what is compared. They are also what the first line of a golden table may hold.
+void add_comparison_options(CLI::App& app, ComparisonOptions& options);
+
+// One job a row: by scene, then target, then policy, in the order given. Throws InputError at `where`, or in a scene
+// file.
+std::vector<Job> plan_comparison(const ComparisonOptions& options, const InputLocation& where);
+
+}  // namespace framesim

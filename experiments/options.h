@@ -1,0 +1,44 @@
+// Options that `run` and `compare` share, and how their words are read. CLI11 fills plain strings; framesim's own
+// parsers read them, so that command line, scene file and golden tables take the same words and answer with the same
+// messages.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run.h"
+
+namespace CLI {
+class App;
+}
+
+namespace framesim {
+
+struct SharedOptions {
+  std::string estimator{kDefaultEstimator};
+  std::string machine, overlap, planner;  // empty: not given
+  std::vector<std::string> effects, no_effects;
+  std::string frames;  // a count or "all"; empty: the verb's default
+  std::string fidelity = "auto";
+  std::string seed = "1";
+  bool verify = false;
+};
+
+void add_shared_options(CLI::App& app, SharedOptions& options);
+void add_jobs_option(CLI::App& app, int& jobs);
+void add_quiet_option(CLI::App& app, bool& quiet);
+
+// A RunSpec without scene, policy and target. Throws InputError at `where` for a word that cannot be taken.
+RunSpec read_shared(const SharedOptions& options, const InputLocation& where);
+
+// Commas separate specs, except that a piece of the form key=value (no ':' before the '=') belongs to the spec before
+// it: "distance,robin-hood:value=8,levels=no,static" is three specs. Texts are read in order.
+std::vector<Spec> read_specs(const std::vector<std::string>& texts, const InputLocation& where);
+
+// A wanted frame time: "25ms", "60fps"; more than 0.
+double read_target_s(const std::string& text, const InputLocation& where);
+
+// Splits at commas; an empty piece is refused.
+std::vector<std::string> split_list(const std::vector<std::string>& texts, const InputLocation& where);
+
+}  // namespace framesim

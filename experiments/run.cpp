@@ -1,0 +1,135 @@
+#include "experiments/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "policies/registry.h"
+#include "scenes/registry.h"
+#include "scenes/scene_workload.h"
+#include "sim/simulation.h"
+
+namespace framesim {
+namespace {
+
+// Everything a run is made of, with the names it was made from.
+struct Parts {
+  std::unique_ptr<Machine> machine;
+  std::unique_ptr<Policy> policy;
+  std::unique_ptr<Planner> planner;
+  std::unique_ptr<Estimator> estimator;
+  std::vector<std::unique_ptr<Effect>> effects;  // active ones
+  std::string planner_name;
+  std::vector<std::string> effect_names;
+  std::vector<InertEffect> inert_effects;
+};
+
+MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
+  MachineProfile profile = spec.machine ? load_machine(*spec.machine) : scene.machine;
+  if (spec.overlap) profile.overlap = *spec.overlap;
+  return profile;
+}
+
+// The scene's effects, then those of the command line; one of the same name takes the earlier one's place.
+std::vector<Spec> resolve_effects(const RunSpec& spec, const Scene& scene) {
+  std::vector<Spec> declared = scene.effects;
+  for (const Spec& without : spec.no_effects) {
+    if (without.name != "all") find_entry("effect", effects(), without);
+    std::erase_if(declared, [&](const Spec& s) { return without.name == "all" || s.name == without.name; });
+  }
+  for (const Spec& added : spec.effects) {
+    const auto same =
+        std::find_if(declared.begin(), declared.end(), [&](const Spec& s) { return s.name == added.name; });
+    if (same == declared.end()) {
+      declared.push_back(added);
+    } else {
+      *same = added;
+    }
+  }
+  return declared;
+}
+
+void make_effects(const RunSpec& spec, const Scene& scene, Parts& parts) {
+  for (const Spec& declared : resolve_effects(spec, scene)) {
+    auto effect = find_entry("effect", effects(), declared).make(declared.settings, spec.seed);
+    if (const auto reason = effect->inert(parts.machine->profile())) {
+      parts.inert_effects.push_back({to_string(declared), *reason});
+      continue;
+    }
+    parts.effect_names.push_back(to_string(declared));
+    parts.effects.push_back(std::move(effect));
+  }
+}
+
+Parts make_parts(const RunSpec& spec, const Scene& scene) {
+  Parts parts;
+  parts.machine = std::make_unique<Machine>(resolve_machine(spec, scene));
+  parts.policy = find_entry("policy", policies(), spec.policy).make(spec.policy.settings);
+  const Spec planner =
+      spec.planner ? *spec.planner : Spec{std::string(parts.policy->traits().planner), {}, spec.policy.where};
+  parts.planner = find_entry("planner", planners(), planner).make(planner.settings);
+  parts.planner_name = to_string(planner);
+  parts.estimator = find_entry("estimator", estimators(), spec.estimator).make(spec.estimator.settings);
+  make_effects(spec, scene, parts);
+  make_engine(parts.machine->profile(), spec.engine);  // refuses what does not go together
+  return parts;
+}
+
+std::vector<const Effect*> pointers(const std::vector<std::unique_ptr<Effect>>& effects) {
+  std::vector<const Effect*> list;
+  for (const auto& effect : effects) list.push_back(effect.get());
+  return list;
+}
+
+RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts) {
+  RunResult result;
+  result.scene = to_string(spec.scene);
+  result.title = scene.title;
+  result.policy = to_string(spec.policy);
+  result.machine = spec.machine ? to_string(*spec.machine) : parts.machine->profile().name;
+  result.machine_source = parts.machine->profile().source;
+  result.overlap = to_string(parts.machine->profile().overlap);
+  result.planner = parts.planner_name;
+  result.estimator = to_string(spec.estimator);
+  result.effects = parts.effect_names;
+  result.inert_effects = parts.inert_effects;
+  result.target_s = spec.target_s;
+  result.seed = spec.seed;
+  return result;
+}
+
+}  // namespace
+
+void check_parts(const RunSpec& spec, const Scene& scene) { make_parts(spec, scene); }
+
+std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
+  const auto path = static_cast<std::int64_t>(scene.camera.poses.size());
+  return spec.frames > 0 ? std::min(spec.frames, path) : path;
+}
+
+RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
+  const Parts parts = make_parts(spec, scene);
+  const auto source = make_workload_source(scene);
+  Simulation simulation({.scene = *source,
+                         .policy = *parts.policy,
+                         .planner = *parts.planner,
+                         .estimator = *parts.estimator,
+                         .machine = *parts.machine,
+                         .logic = scene.logic,
+                         .effects = pointers(parts.effects)},
+                        {.target_s = spec.target_s, .engine = spec.engine, .check_selections = spec.verify});
+  RunResult result = describe(spec, scene, parts);
+  const std::int64_t frames = frames_to_run(spec, scene);
+  result.records.reserve(static_cast<std::size_t>(frames));
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    result.records.push_back(simulation.step());
+    if (on_frame) on_frame();
+  }
+  result.summary = summarise(result.records, spec.target_s);
+  result.records_hash = hash(result.records);
+  return result;
+}
+
+bool holds(const RunResult& result) { return result.summary.p95_s <= kHoldTolerance * result.target_s; }
+
+}  // namespace framesim

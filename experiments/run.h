@@ -1,0 +1,72 @@
+// One run of the simulator as the command line asks for it: names in, summary and records out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/engine.h"
+#include "sim/frame_record.h"
+#include "sim/metrics.h"
+#include "sim/parameters.h"
+
+namespace framesim {
+
+// The default estimator knows the machine only by benchmark, so that its error shows in every table; `--estimator
+// oracle` takes it away.
+inline constexpr std::string_view kDefaultEstimator = "two-stage";
+
+// What to run. Names are looked up in the registries; an absent option leaves the choice to scene or policy.
+struct RunSpec {
+  Spec scene;
+  Spec policy;
+  Spec estimator{std::string(kDefaultEstimator), {}, {"command line"}};
+  std::optional<Spec> machine;     // else the scene's
+  std::optional<Overlap> overlap;  // else the machine's
+  std::optional<Spec> planner;     // else the policy's own
+  std::vector<Spec> effects;       // added to the scene's, or replacing the one of that name
+  std::vector<Spec> no_effects;    // taken from the scene's; "all" takes every one
+  double target_s = 0;             // wanted frame time, > 0
+  std::uint64_t seed = 1;
+  std::int64_t frames = 0;  // at most so many; 0 = the whole camera path
+  EngineOptions engine;
+  bool verify = false;  // check every selection against the rules (slow)
+};
+
+// An effect that was declared but cannot change this run, and why it was left out.
+struct InertEffect {
+  std::string name, reason;
+};
+
+struct RunResult {
+  // As they were resolved, in the form in which the command line takes them.
+  std::string scene, title, policy, machine, machine_source, overlap, planner, estimator;
+  std::vector<std::string> effects;
+  std::vector<InertEffect> inert_effects;
+  double target_s = 0;
+  std::uint64_t seed = 0;
+  Summary summary;
+  std::vector<FrameRecord> records;
+  std::uint64_t records_hash = 0;
+};
+
+// Looks up and makes every part without running a frame. Throws InputError for whatever is wrong, so that a list of
+// runs can be checked before the first one starts.
+void check_parts(const RunSpec& spec, const Scene& scene);
+
+// Frames that `run` will simulate.
+std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene);
+
+// Runs it. `scene` is read only, so that runs on several threads may share it. `on_frame`, if given, is called after
+// each frame, on the calling thread.
+RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame = {});
+
+// A run that holds its target: the 95th percentile of frame time is at most 1.10 times the target.
+inline constexpr double kHoldTolerance = 1.10;
+bool holds(const RunResult& result);
+
+}  // namespace framesim

@@ -1,0 +1,173 @@
+// framesim run: one policy on one scene, in words.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <memory>
+
+#include "experiments/gnuplot.h"
+#include "experiments/options.h"
+#include "experiments/output_file.h"
+#include "experiments/plot.h"
+#include "experiments/progress.h"
+#include "experiments/table.h"
+#include "experiments/verbs.h"
+#include "scenes/registry.h"
+#include "sim/quantity.h"
+
+namespace framesim {
+namespace {
+
+struct RunOptions {
+  std::string scene, policy, target, frames_out, plot_folder;
+  SharedOptions shared;
+};
+
+const InputLocation kCommandLine{"command line"};
+
+RunSpec read_spec(const RunOptions& options) {
+  RunSpec spec = read_shared(options.shared, kCommandLine);
+  spec.scene = parse_spec(options.scene, kCommandLine);
+  spec.policy = parse_spec(options.policy, kCommandLine);
+  if (!options.target.empty()) spec.target_s = read_target_s(options.target, kCommandLine);
+  spec.engine.critical_path = true;
+  return spec;
+}
+
+std::string frames_csv(const RunResult& result) {
+  const auto add_line = [](std::string& text, std::string line) {
+    while (!line.empty() && line.back() == '\n') line.pop_back();
+    text += line + '\n';
+  };
+  std::string text;
+  add_line(text, frame_csv_header());
+  for (const FrameRecord& record : result.records) add_line(text, to_csv(record));
+  return text;
+}
+
+struct CriticalPart {
+  std::string_view name;
+  std::int64_t FrameRecord::*time_ps;
+};
+constexpr std::array<CriticalPart, 6> kCriticalParts = {
+    {{"CPU before the first command", &FrameRecord::critical_cpu_ps},
+     {"submission", &FrameRecord::critical_submit_ps},
+     {"per-primitive stage", &FrameRecord::critical_primitive_ps},
+     {"per-pixel stage", &FrameRecord::critical_pixel_ps},
+     {"behind earlier frames", &FrameRecord::critical_backlog_ps},
+     {"swap and vertical blank", &FrameRecord::critical_present_ps}}};
+
+// Where the latency of all frames went, in per cent; "NA" from engines that do not trace it.
+std::string critical_path(const RunResult& result) {
+  std::array<double, kCriticalParts.size()> sums{};
+  double total = 0;
+  for (const FrameRecord& record : result.records) {
+    for (std::size_t i = 0; i < kCriticalParts.size(); ++i)
+      sums[i] += static_cast<double>(record.*kCriticalParts[i].time_ps);
+  }
+  for (const double sum : sums) total += sum;
+  if (total <= 0) return "NA (only --fidelity recurrence traces it)";
+  std::string text;
+  for (std::size_t i = 0; i < kCriticalParts.size(); ++i) {
+    if (sums[i] <= 0) continue;
+    text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", kCriticalParts[i].name, 100 * sums[i] / total);
+  }
+  return text;
+}
+
+std::string effects_text(const RunResult& r) {
+  std::string text = r.effects.empty() ? "none" : fmt::format("{}", fmt::join(r.effects, ", "));
+  for (const InertEffect& effect : r.inert_effects)
+    text += fmt::format("; {} left out: {}", effect.name, effect.reason);
+  return text;
+}
+
+std::string ms(double seconds) { return fmt::format("{:.3f} ms", seconds * 1e3); }
+
+std::string describe_run(const RunResult& r) {
+  const Summary& s = r.summary;
+  std::string text;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<14} {}\n", name, value);
+  };
+  line("scene", r.title.empty() ? r.scene : fmt::format("{}: {}", r.scene, r.title));
+  line("machine", r.machine);
+  line("overlap", r.overlap);
+  line("policy", fmt::format("{}, planner {}, estimator {}", r.policy, r.planner, r.estimator));
+  line("effects", effects_text(r));
+  line("target",
+       fmt::format("{} ({:.4g} fps), {:.0f} frames measured", format_duration(r.target_s), 1 / r.target_s, s.frames));
+  line("holds", fmt::format("{}: 95th percentile {} is {:.2f} times the target (limit {:.2f})", holds(r) ? "yes" : "NO",
+                            ms(s.p95_s), s.p95_s / r.target_s, kHoldTolerance));
+  line("frame time",
+       fmt::format("mean {}, standard deviation {}, 99th percentile {}", ms(s.mean_s), ms(s.stddev_s), ms(s.p99_s)));
+  line("error", fmt::format("AvgErr {:.2f} %, bias {:+.2f} %, {:.1f} % of frames over the target", s.avg_err * 100,
+                            s.bias * 100, s.over_target * 100));
+  line("latency", fmt::format("mean {}", ms(s.latency_s)));
+  line("benefit", fmt::format("{:.1f} % of everything visible at its finest; {:.1f} level switches a frame",
+                              s.benefit_share * 100, s.switches));
+  line("decision",
+       fmt::format("{:.1f} operations a frame; estimator error {:.2f} %", s.operations, s.estimator_error * 100));
+  line("critical path", critical_path(r));
+  return text;
+}
+
+void run_one(const RunOptions& options, const Session& session) {
+  RunSpec spec = read_spec(options);
+  if (!options.frames_out.empty()) check_writable(options.frames_out);
+  const Scene scene = load_scene(spec.scene);
+  if (spec.target_s == 0) spec.target_s = scene.targets_s.front();
+  check_parts(spec, scene);
+  if (!options.plot_folder.empty()) {
+    require_gnuplot();
+    make_folder(options.plot_folder);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  RunResult result;
+  {
+    Progress progress("frames", frames_to_run(spec, scene), session.quiet);
+    result = run(spec, scene, [&] { progress.advance(); });
+  }
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!options.frames_out.empty()) write_file(options.frames_out, frames_csv(result));
+  fmt::print("{}", describe_run(result));
+  if (options.plot_folder.empty() && session.quiet) return;
+  std::vector<std::string> pictures;
+  if (!options.plot_folder.empty()) pictures = write_plots({&result, 1}, options.plot_folder);
+  if (session.quiet) return;
+  for (const std::string& path : pictures) fmt::print(stderr, "wrote {}\n", path);
+  fmt::print(stderr, "took {:.2f} s, {:.0f} frames/s\n", took_s, static_cast<double>(result.records.size()) / took_s);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Session& session) {
+  CLI::App* verb = app.add_subcommand("run", "Run one policy on one scene and say how it went");
+  const auto options = std::make_shared<RunOptions>();
+  verb->add_option("SCENE", options->scene,
+                   "A name from 'framesim list scenes', with parameters as name:key=value, or a scene file")
+      ->type_name("")
+      ->required();
+  verb->add_option("--policy", options->policy,
+                   "A name from 'framesim list policies', with parameters as name:key=value")
+      ->type_name("SPEC")
+      ->required();
+  verb->add_option("--target", options->target,
+                   "Wanted frame time, in ns, us, ms, s, Hz or fps (default: the first of the scene's list)")
+      ->type_name("TIME");
+  add_shared_options(*verb, options->shared);
+  verb->add_option("--frames-out", options->frames_out, "Write one row a frame to this CSV file")->type_name("FILE");
+  verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
+      ->type_name("DIR");
+  add_quiet_option(*verb, session.quiet);
+  verb->footer(
+      "Examples:\n"
+      "  framesim run street --policy robin-hood --target 25ms\n"
+      "  framesim run graphicon-forest --policy robin-hood:levels=no --target 60fps --estimator table --frames-out "
+      "f.csv\n"
+      "  framesim run my/scene.toml --policy funkhouser --target 40ms --overlap staged:2 --plot pictures");
+  verb->callback([options, &session] { run_one(*options, session); });
+}
+
+}  // namespace framesim

@@ -1,0 +1,304 @@
+// One frame's workload: visibility gives rows, rows become items. Three presentations of the same rows:
+//  - a flat scene: one item a row;
+//  - a tree, for policies that take hierarchies: the visible nodes in preorder;
+//  - a tree, for the others: bundles dropped, continuous leaves listed, trees of levels as blocks (flat_blocks.h).
+// Continuous types become stand-in levels where the policy takes none. O(visible) a frame; every vector is reused.
+#include "scenes/scene_workload.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "scenes/flat_blocks.h"
+#include "scenes/view_levels.h"
+#include "scenes/visibility.h"
+
+namespace framesim {
+namespace {
+
+Facts stand_in(const ObjectType& type, double x) {
+  const Facts& finest = type.levels.back();
+  Facts facts = finest;
+  facts.polygons *= x;
+  facts.vertices *= x;
+  facts.texture_bytes *= x;
+  facts.lines *= x;
+  facts.points *= x;
+  facts.coverage *= x;
+  facts.draws = draws_issued(finest, x, type.draws_scale_below_knee);
+  facts.resolution = x;
+  if (finest.stated_cost_s) facts.stated_cost_s = *finest.stated_cost_s * x;
+  if (finest.stated_benefit) {
+    facts.stated_benefit = *finest.stated_benefit * (type.shape == CurveShape::linear ? x : std::sqrt(x));
+  }
+  return facts;
+}
+
+// How one instance is seen in this frame.
+struct Sight {
+  double depth_m = 0, distance_m = 0, area_px = 0;
+};
+
+class SceneWorkload final : public WorkloadSource {
+ public:
+  explicit SceneWorkload(const Scene& scene)
+      : scene_(scene), visibility_(make_visibility(scene)), depths_(level_tree_depths(scene.instances)) {
+    focal_px_ = focal_length_px(scene.screen);
+    facts_.name = scene.name;
+    facts_.types = scene.types;
+    facts_.instances = scene.instances.size();
+    facts_.frames = static_cast<std::int64_t>(scene.camera.poses.size());
+    facts_.screen_px = static_cast<double>(scene.screen.width) * scene.screen.height;
+    for (std::size_t t = 0; t < scene.types.size(); ++t) add_static_facts(t);
+    facts_.full_detail_facts = count_polygons();
+  }
+
+  const SceneFacts& scene() const override { return facts_; }
+
+  VisibilityCounts fill(std::int64_t frame, const WorkloadRequest& request, Workload& workload) override {
+    FRAMESIM_CHECK(frame >= 0 && frame < facts_.frames, fmt::format("frame {} of {}", frame, facts_.frames));
+    pose_ = &scene_.camera.poses[static_cast<std::size_t>(frame)];
+    request_ = request;
+    VisibilityCounts counts;
+    counts.tests = visibility_->find(*pose_, rows_);
+    begin(workload);
+    if (scene_.instances.subtree_end.empty()) {
+      fill_flat(workload);
+    } else if (request.hierarchy) {
+      fill_tree(workload);
+    } else {
+      fill_blocks(workload);
+    }
+    finish(workload);
+    for (const ItemKind kind : workload.kind) counts.visible += kind != ItemKind::bundle;
+    return counts;
+  }
+
+ private:
+  // Where the facts of a type begin in static_facts_, and its stand-in levels, if it is continuous.
+  struct TypeFacts {
+    std::uint32_t levels = 0, stand_ins = 0;
+    ViewPart view = ViewPart::none;
+  };
+
+  void add_static_facts(std::size_t t) {
+    ObjectType& type = facts_.types[t];
+    TypeFacts places{.levels = static_cast<std::uint32_t>(static_facts_.size())};
+    if (t < scene_.view_levels.size()) places.view = scene_.view_levels[t].part;
+    static_facts_.insert(static_facts_.end(), type.levels.begin(), type.levels.end());
+    places.stand_ins = static_cast<std::uint32_t>(static_facts_.size());
+    if (places.view != ViewPart::none) type.continuous = false;
+    if (type.continuous) {
+      for (int i = type.stand_in_levels - 1; i >= 1; --i) {
+        static_facts_.push_back(stand_in(type, std::ldexp(1.0, -i)));
+      }
+      static_facts_.push_back(type.levels.back());
+    }
+    type_facts_.push_back(places);
+  }
+
+  // Everything at its finest: of a tree of levels, its leaves.
+  double count_polygons() const {
+    const Instances& rows = scene_.instances;
+    double polygons = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const bool inner = !rows.subtree_end.empty() && rows.subtree_end[row] > row + 1;
+      if (!inner && rows.kind[row] != ItemKind::bundle) polygons += finest(row).polygons;
+    }
+    return polygons;
+  }
+
+  const Facts& finest(std::size_t row) const { return scene_.types[index(scene_.instances.type[row])].levels.back(); }
+
+  Sight look_at(std::uint32_t row) const {
+    const glm::dvec3 line = scene_.instances.centre[row] - pose_->eye;
+    Sight sight{.depth_m = glm::dot(line, pose_->forward), .distance_m = glm::length(line)};
+    sight.area_px = projected_area_px(static_cast<double>(scene_.instances.radius_m[row]), sight.distance_m,
+                                      sight.depth_m, focal_px_, facts_.screen_px);
+    return sight;
+  }
+
+  // Small detail culling (Zach et al. 2002, section 5.3).
+  bool too_small(const Sight& sight) const { return sight.area_px < scene_.smallest_px; }
+
+  void begin(Workload& workload) const {
+    workload.clear();
+    workload.types = facts_.types;
+    workload.screen_px = facts_.screen_px;
+    workload.facts.assign(static_facts_.begin(), static_facts_.end());
+    workload.static_facts = static_cast<std::uint32_t>(static_facts_.size());
+    workload.level_begin.push_back(0);
+  }
+
+  void add_item(Workload& workload, std::uint32_t row, const Sight& sight, ItemKind kind, std::uint32_t facts_begin,
+                std::size_t levels) const {
+    workload.id.push_back(InstanceId{row});
+    workload.type.push_back(scene_.instances.type[row]);
+    workload.kind.push_back(kind);
+    workload.projected_area_px.push_back(sight.area_px);
+    workload.facts_begin.push_back(facts_begin);
+    workload.level_begin.push_back(workload.level_begin.back() + static_cast<std::uint32_t>(levels));
+    const Columns columns = request_.columns;
+    if (has(columns, Columns::depth)) workload.depth_m.push_back(sight.depth_m);
+    if (has(columns, Columns::distance)) workload.distance_m.push_back(sight.distance_m);
+    if (has(columns, Columns::view_angle)) {
+      const double cosine = sight.distance_m > 0 ? sight.depth_m / sight.distance_m : 1;
+      workload.view_angle_rad.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)));
+    }
+    if (has(columns, Columns::area)) workload.area_m2.push_back(static_cast<double>(scene_.instances.area_m2[row]));
+    // A box has the diameter of the sphere around it as its diagonal.
+    if (has(columns, Columns::diagonal)) {
+      workload.diagonal_m.push_back(2 * static_cast<double>(scene_.instances.radius_m[row]));
+    }
+  }
+
+  // The row as it is: bundle, curve, stand-ins, levels, or levels made for this view.
+  void add_row(Workload& workload, std::uint32_t row, const Sight& sight) const {
+    const TypeId id = scene_.instances.type[row];
+    const TypeFacts& places = type_facts_[index(id)];
+    const ObjectType& type = facts_.types[index(id)];
+    if (scene_.instances.kind[row] == ItemKind::bundle) {
+      add_item(workload, row, sight, ItemKind::bundle, places.levels, 0);
+    } else if (places.view != ViewPart::none) {
+      add_view_row(workload, row, sight, scene_.view_levels[index(id)]);
+    } else if (!type.continuous) {
+      add_item(workload, row, sight, ItemKind::levels, places.levels, type.levels.size());
+    } else if (request_.curves) {
+      add_item(workload, row, sight, ItemKind::curve, places.levels, 1);
+    } else {
+      const auto levels = static_cast<std::size_t>(std::max(1, type.stand_in_levels));
+      add_item(workload, row, sight, ItemKind::levels, places.stand_ins, levels);
+    }
+  }
+
+  void add_view_row(Workload& workload, std::uint32_t row, const Sight& sight, const ViewLevels& levels) const {
+    const auto begin_at = static_cast<std::uint32_t>(workload.facts.size());
+    const double type_radius_m = scene_.types[index(scene_.instances.type[row])].radius_m;
+    const double scale = static_cast<double>(scene_.instances.radius_m[row]) / type_radius_m;
+    // Nothing is nearer than the near plane, so the scale stays finite for an eye in the crown.
+    const double px_per_m = focal_px_ / std::max(sight.distance_m, scene_.screen.near_m);
+    append_view_levels(levels, finest(row), scale, px_per_m, workload.facts);
+    add_item(workload, row, sight, ItemKind::levels, begin_at, view_level_count(levels));
+  }
+
+  void fill_flat(Workload& workload) const {
+    for (const std::uint32_t row : rows_) {
+      const Sight sight = look_at(row);
+      if (!too_small(sight)) add_row(workload, row, sight);
+    }
+  }
+
+  // Visible nodes in preorder. A bundle that has nothing left below it is taken out again: it is the last item then.
+  // Nodes of a tree of levels are never culled as too small: that would tear holes into the terrain.
+  void fill_tree(Workload& workload) {
+    open_.clear();
+    for (const std::uint32_t row : rows_) {
+      close_nodes(workload, row);
+      const Sight sight = look_at(row);
+      if (scene_.instances.kind[row] == ItemKind::curve && too_small(sight)) continue;
+      open_.push_back({row, static_cast<std::uint32_t>(workload.size())});
+      add_row(workload, row, sight);
+      workload.subtree_end.push_back(0);
+    }
+    close_nodes(workload, static_cast<std::uint32_t>(scene_.instances.size()));
+  }
+
+  // Ends the subtrees that do not hold `row`.
+  void close_nodes(Workload& workload, std::uint32_t row) {
+    while (!open_.empty() && scene_.instances.subtree_end[open_.back().row] <= row) {
+      const std::uint32_t item = open_.back().item;
+      open_.pop_back();
+      if (workload.kind[item] == ItemKind::bundle && workload.size() == item + 1) {
+        drop_last(workload);
+      } else {
+        workload.subtree_end[item] = static_cast<std::uint32_t>(workload.size());
+      }
+    }
+  }
+
+  static void drop_last(Workload& workload) {
+    workload.id.pop_back();
+    workload.type.pop_back();
+    workload.kind.pop_back();
+    workload.projected_area_px.pop_back();
+    workload.facts_begin.pop_back();
+    workload.level_begin.pop_back();
+    workload.subtree_end.pop_back();
+    for (auto* column : {&workload.depth_m, &workload.distance_m, &workload.view_angle_rad, &workload.area_m2,
+                         &workload.diagonal_m}) {
+      if (!column->empty()) column->pop_back();
+    }
+  }
+
+  // A node at flat_depth, or above it with nothing visible below, is a block; nodes between it and the top are passed by.
+  void fill_blocks(Workload& workload) {
+    const Instances& all = scene_.instances;
+    for (std::size_t i = 0; i < rows_.size();) {
+      const std::uint32_t row = rows_[i];
+      const ItemKind kind = all.kind[row];
+      if (kind == ItemKind::curve) {
+        const Sight sight = look_at(row);
+        if (!too_small(sight)) add_row(workload, row, sight);
+      }
+      const bool leaf = i + 1 == rows_.size() || rows_[i + 1] >= all.subtree_end[row];
+      if (kind != ItemKind::levels || (!leaf && depths_[row] < scene_.flat_depth)) {
+        ++i;
+        continue;
+      }
+      if (leaf && all.subtree_end[row] == row + 1 && depths_[row] == 0) {
+        add_row(workload, row, look_at(row));  // no tree: an ordinary instance beside one
+        ++i;
+        continue;
+      }
+      const auto end = static_cast<std::size_t>(
+          std::lower_bound(rows_.begin() + static_cast<std::ptrdiff_t>(i), rows_.end(), all.subtree_end[row]) -
+          rows_.begin());
+      add_block(workload, i, end);
+      i = end;
+    }
+  }
+
+  void add_block(Workload& workload, std::size_t first, std::size_t last) {
+    areas_.clear();
+    for (std::size_t i = first; i < last; ++i) areas_.push_back(look_at(rows_[i]).area_px);
+    const auto begin_at = static_cast<std::uint32_t>(workload.facts.size());
+    const std::size_t levels =
+        append_block_levels(scene_, depths_, std::span(rows_).subspan(first, last - first), areas_, workload.facts);
+    add_item(workload, rows_[first], look_at(rows_[first]), ItemKind::levels, begin_at, levels);
+  }
+
+  void finish(Workload& workload) const {
+    workload.cost_s.resize(workload.level_begin.back());
+    workload.benefit.resize(workload.level_begin.back());
+    workload.curve_setup_s.resize(workload.size());
+    workload.curve_knee.resize(workload.size());
+  }
+
+  const Scene& scene_;
+  std::unique_ptr<Visibility> visibility_;
+  std::vector<std::uint8_t> depths_;
+  SceneFacts facts_;
+  std::vector<Facts> static_facts_;
+  std::vector<TypeFacts> type_facts_;
+  double focal_px_ = 0;
+
+  // Of the frame that is being filled.
+  const Pose* pose_ = nullptr;
+  WorkloadRequest request_;
+  std::vector<std::uint32_t> rows_;
+  struct OpenNode {
+    std::uint32_t row, item;
+  };
+  std::vector<OpenNode> open_;
+  std::vector<double> areas_;
+};
+
+}  // namespace
+
+std::unique_ptr<WorkloadSource> make_workload_source(const Scene& scene) {
+  return std::make_unique<SceneWorkload>(scene);
+}
+
+}  // namespace framesim

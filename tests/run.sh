@@ -1,0 +1,83 @@
+#!/bin/sh
+# Everything that must hold, from a fresh clone. `sh tests/run.sh --quick`: build, tests and golden tables only.
+# The last line is "N passed, N failed", counting stages; the exit code is 0 if none failed.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+. experiments/setup.sh
+
+quick=no
+case ${1-} in
+  '') ;;
+  --quick) quick=yes ;;
+  *) say "usage: sh tests/run.sh [--quick]" >&2; exit 2 ;;
+esac
+
+passed=0
+failed=0
+
+# stage NAME COMMAND...: runs it, counts it.
+stage() {
+  name=$1
+  shift
+  say "== $name"
+  begin=$(date +%s)
+  if "$@"; then
+    passed=$((passed + 1))
+    say "   ok, $(($(date +%s) - begin)) s"
+  else
+    failed=$((failed + 1))
+    say "   FAILED: $name"
+  fi
+}
+
+finish() {
+  say "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ]
+  exit
+}
+
+# table PROGRAM FILE OPTION...: the comparison as CSV.
+table() {
+  program=$1
+  file=$2
+  shift 2
+  "$program" compare --quiet --format csv --output "$file" "$@"
+}
+
+# Enough of everything to notice a difference, small enough for an unoptimised build.
+small() { table "$1" "$2" --scenes street,graphicon-forest,auditorium --frames 40; }
+
+same() { cmp "$1" "$2"; }
+
+sanitized_tests() {
+  ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 build-sanitize/framesim_tests
+}
+
+packages=$BUILD_PACKAGES
+[ "$quick" = yes ] || packages="$packages clang"
+# shellcheck disable=SC2086
+stage "packages" install_packages $packages
+[ "$failed" -eq 0 ] || finish
+
+stage "build with g++, Release" build_framesim build all -DCMAKE_BUILD_TYPE=Release
+[ "$failed" -eq 0 ] || finish
+stage "tests" build/framesim_tests
+stage "golden tables" build/framesim check tests/golden --quiet
+[ "$quick" = no ] || finish
+
+out=results/tests
+mkdir -p "$out"
+stage "default comparison, 1 thread" table build/framesim "$out/jobs-1.csv" --jobs 1
+stage "default comparison, 2 threads" table build/framesim "$out/jobs-2.csv" --jobs 2
+stage "1 and 2 threads: same bytes" same "$out/jobs-1.csv" "$out/jobs-2.csv"
+
+stage "build with clang++" build_framesim build-clang framesim -DCMAKE_CXX_COMPILER=clang++ -DFRAMESIM_TESTS=OFF
+stage "default comparison, clang++" table build-clang/framesim "$out/clang.csv"
+stage "g++ and clang++: same bytes" same "$out/jobs-2.csv" "$out/clang.csv"
+
+stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON
+stage "tests with sanitizers" sanitized_tests
+stage "small comparison, -O2" small build/framesim "$out/small-O2.csv"
+stage "small comparison, -O0 with sanitizers" small build-sanitize/framesim "$out/small-O0.csv"
+stage "-O0 and -O2: same bytes" same "$out/small-O2.csv" "$out/small-O0.csv"
+finish
