@@ -1,7 +1,6 @@
 // Golden tables: error tables that are kept, and rerun to see whether anything moved.
 //
-// A golden table is a CSV file as `framesim compare --format csv` writes it, below a first line that says how it was
-// made:
+// A golden table is a CSV file as `framesim compare --format csv` writes it, below a first line that says how it was made:
 //
 //     # framesim compare --scenes street --policies static,robin-hood --targets 25ms
 //     scene,policy,target_s,frames,...,hash

@@ -1,18 +1,18 @@
 // contribution-halving: a triangle budget, handed out by a heap of contributions that halve with every finer level.
 //
 // Source:        D. Campos Milian, SRGGE project 2 (2020), algorithm 1: time-critical rendering.
-// Equations:     contribution c(L) = diagonal / (2^L * distance), L = 0 the coarsest level; 0 behind the camera.
-//                While the triangles are under the budget, raise the item of largest c and halve it; while they are
-//                over it, lower the item of smallest c and double it.
+// Equations:     contribution c(L) = diagonal / (2^L * distance), L = 0 the coarsest level; 0 behind the camera. While
+//                the triangles are under the budget, raise the item of largest c and halve it; while they are over it,
+//                lower the item of smallest c and double it.
 // Repaired:      a raise must fit and must have somewhere to go, a lowering too: an item that cannot move leaves the
-// heap.
-//                Nothing behind the camera is raised. Ties go to the item that comes first.
+//                heap. Nothing behind the camera is raised. Ties go to the item that comes first.
 // As printed:    `as-printed=true`, for comparison; its faults are marked where they are. It need not end, hence the
-// cap. Complexity:    O(n + changes * log n). Known failure: budgets triangles, not seconds: pixels, draw calls and
-// textures are free, so frame time drifts with what is
-//                in view, and the budget is not kept. Levels that state a cost but no polygons look free and, if all
-//                do, a derived budget is 0. The halving is an assumption: levels that do not halve the error are ranked
-//                wrongly.
+//                cap.
+// Complexity:    O(n + changes * log n).
+// Known failure: budgets triangles, not seconds: pixels, draw calls and textures are free, so frame time drifts with
+//                what is in view, and the budget is not kept. Levels that state a cost but no polygons look free and,
+//                if all do, a derived budget is 0. The halving is an assumption: levels that do not halve the error are
+//                ranked wrongly.
 #include <algorithm>
 #include <cstdint>
 #include <limits>

@@ -2,14 +2,13 @@
 //
 // Source:        Funkhouser and Séquin 1993, section 7, test c, after Schachter 1983 (flight simulators). They give the
 //                idea, not the law; the multiplicative one here is ours, as a threshold must stay positive [R].
-// Equation:      threshold <- clamp( threshold * (frame_time / target)^gain, min, max ) after every frame.
-//                gain 1 is right if cost is in inverse proportion to the threshold; 0 is `static`.
-//                Only the clamped value is kept, so nothing winds up while the threshold is at a bound.
+// Equation:      threshold <- clamp( threshold * (frame_time / target)^gain, min, max ) after every frame. gain 1 is
+//                right if cost is in inverse proportion to the threshold; 0 is `static`. Only the clamped value is
+//                kept, so nothing winds up while the threshold is at a bound.
 // Complexity:    O(levels).
 // Known failure: reacts one frame late. A sudden change of view gives one bad frame and then an overshoot, and late
-// frame
-//                times (more frames in flight) make it oscillate; then a smaller gain helps. Frame time that drawing
-//                does not cause (logic, waiting for the display) drives the threshold to a bound.
+//                frame times (more frames in flight) make it oscillate; then a smaller gain helps. Frame time that
+//                drawing does not cause (logic, waiting for the display) drives the threshold to a bound.
 #include <algorithm>
 #include <cmath>
 

@@ -10,10 +10,9 @@
 //                level for each item before any gets a second [R].
 // Complexity:    O(n log n) for the order, and O(n) a sweep, at most as many sweeps as an item has levels.
 // Known failure: the floor. Protected items keep their level whatever the budget, and once the others are at their
-// coarsest
-//                nothing is left: the paper's 80 trees do not reach 15 frames/s. With protect=false only the coarsest
-//                levels are a floor, and the budget is kept wherever they fit. Order depends on I alone, not on what a
-//                level costs or gains.
+//                coarsest nothing is left: the paper's 80 trees do not reach 15 frames/s. With protect=false only the
+//                coarsest levels are a floor, and the budget is kept wherever they fit. Order depends on I alone, not
+//                on what a level costs or gains.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

@@ -16,8 +16,9 @@
 // Splitting:     curves below a bundle share one variable while the loss is bounded by theta (gradient/node_sums.h). The variable's
 //                set-up is charged with the least knee of its curves, never too low. One whose jump does not fit any more
 //                is split into its children.
-// Culling:       curves of less projected area than cull-px are not drawn, nor those below a single primitive.
-// End:           money that is left (a jump that did not fit, rounding) raises single curves in item order.
+// Culling:       curves of less projected area than cull-px are not drawn.
+// End:           curves left below their first primitive are dropped for others; money that is still left (a jump that did not
+//                fit, rounding) goes to the curve that gains most from it.
 // Complexity:    O(n) set-up, O(log n) an increment, O(variables) an evaluation, about 15 evaluations a step, steps <=
 //                ln(largest/smallest slope_d) / ln(1 + slack). No allocation in steady state.
 // Known failure: the gradient is not scaled by cost and x never falls again, so the first step shares in proportion to
@@ -95,6 +96,7 @@ class MixedGradientPolicy : public Policy {
   void select(const FrameContext& context, Selection& selection) override {
     start(context, selection);
     optimise();
+    if (drop_unseen()) spend_on_curves();
     const Workload& workload = context.workload;
     write_curves(workload, ascent_, parameters_.cull_px, selection, curves_);
     spend_rest(workload, budget_s_, curves_, selection);
@@ -166,6 +168,7 @@ class MixedGradientPolicy : public Policy {
                                        .setup_s = sum.setup_s,
                                        .rest_s = sum.cost_s - sum.setup_s,
                                        .knee = sum.knee,
+                                       .first_x = sum.first_x,
                                        .x = x});
     next_[item] = static_cast<int>(v);
     if (ascent_[v].jump_to > 0 && !(ascent_[v].x < ascent_[v].cap)) queue_jump(v);
@@ -214,7 +217,7 @@ class MixedGradientPolicy : public Policy {
     CurveVariable& variable = ascent_[static_cast<std::size_t>(next_[item])];
     const double x = variable.x;
     aimed_ = false;
-    variable.benefit = variable.x = variable.cap = variable.jump_to = 0;
+    retire(variable);
     for (std::size_t child = item + 1; child < end(item); child = end(child)) {
       if (sums_[child].curves > 0) add_variable(child, x);
     }
@@ -281,6 +284,27 @@ class MixedGradientPolicy : public Policy {
       take_increment();
     }
   }
+
+  // Curves that were left below their first primitive make room for others. True if there were any.
+  bool drop_unseen() {
+    bool dropped = false;
+    for (std::size_t v = 0; v < ascent_.size(); ++v) {
+      CurveVariable& variable = ascent_[v];
+      if (variable.x <= 0 || variable.x >= variable.first_x) continue;
+      used_s_.add(-cost_s(variable, variable.x));
+      retire(variable);
+      dropped = true;
+    }
+    return dropped;
+  }
+
+  void spend_on_curves() {
+    while (left_s() > kSpent * budget_s_ && ascent_.aim() > 0 && step(0)) {
+    }
+  }
+
+  // A variable that is none any more.
+  static void retire(CurveVariable& variable) { variable.benefit = variable.x = variable.cap = variable.jump_to = 0; }
 
   // One continuous step; false if nothing moved.
   bool step(double slope) {

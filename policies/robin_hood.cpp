@@ -2,21 +2,18 @@
 //
 // Source:        Robin Hood's algorithm for time-critical level of detail, Graphicon 2005, section 5.
 // Equations:     1: v_f = sum v_i. 2: t_i = v_i*t_r/v_f. 3, 4: t_r and v_f are what is left for the instances still to
-// come;
-//                what an instance did not use of its t_i stays in t_r. 8 to 11: the value functions (parameter
+//                come; what an instance did not use of its t_i stays in t_r. 8 to 11: the value functions (parameter
 //                `value`). Types go from simple to complex: by the cost of their finest level at one fixed area, ties
 //                by type; instances of a type by item.
 // Complexity:    O(items + levels) a frame: one counting sort by type and two passes, no allocation. A level is found
-// by
-//                looking from the finest down, so that tables whose costs do not rise are handled too; the paper's
+//                by looking from the finest down, so that tables whose costs do not rise are handled too; the paper's
 //                binary search needs rising costs.
 // Hard cases:    Depth and distance are taken as at least `near`: the printed values are infinite at 0 and undefined
-// behind
-//                the camera. If all values are 0, or all that are left, the time is shared equally (printed: 0/0).
-//                Equations 3 and 4 as printed (`sums=printed`) subtract: once values span many orders of magnitude v_f
-//                and t_r are rounding noise, and so are the last shares. `sums=suffix` keeps the price of value p =
-//                t_r/v_f instead: an instance that leaves r of its time raises it by r / (sum of the values after it),
-//                with sums made from the last instance to the first. No term is ever subtracted.
+//                behind the camera. If all values are 0, or all that are left, the time is shared equally (printed:
+//                0/0). Equations 3 and 4 as printed (`sums=printed`) subtract: once values span many orders of
+//                magnitude v_f and t_r are rounding noise, and so are the last shares. `sums=suffix` keeps the price of
+//                value p = t_r/v_f instead: an instance that leaves r of its time raises it by r / (sum of the values
+//                after it), with sums made from the last instance to the first. No term is ever subtracted.
 // Known failure: one pass in a fixed order. An early, simple instance never receives what later ones leave, and if the
 //                last instances cannot use their time it is lost (the paper, section 7.2). Blind to benefit.
 #include <algorithm>

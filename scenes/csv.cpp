@@ -46,7 +46,9 @@ void CsvReader::read_header(std::size_t required_count) {
 void CsvReader::split(std::string_view line) {
   fields_.clear();
   field_column_.clear();
-  if (!is_utf8(line)) throw InputError({lines_.name(), lines_.line()}, "not UTF-8");
+  if (const auto at = find_invalid_utf8(line)) {
+    throw InputError({lines_.name(), lines_.line(), static_cast<int>(*at) + 1}, "not UTF-8");
+  }
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   for (std::size_t begin = 0;;) {
     const std::size_t comma = std::min(line.find(',', begin), line.size());

@@ -88,7 +88,7 @@ std::string read_text_file(const std::string& path, std::size_t largest) {
   return text;
 }
 
-bool is_utf8(std::string_view text) {
+std::optional<std::size_t> find_invalid_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   for (std::size_t i = 0; i < text.size();) {
     const unsigned lead = byte(i);
@@ -100,17 +100,17 @@ bool is_utf8(std::string_view text) {
                                : lead >= 0xe0 && lead < 0xf0 ? 3
                                : lead >= 0xf0 && lead < 0xf5 ? 4
                                                              : 0;
-    if (length == 0 || text.size() - i < length) return false;
+    if (length == 0 || text.size() - i < length) return i;
     for (std::size_t k = 1; k < length; ++k) {
-      if ((byte(i + k) & 0xc0) != 0x80) return false;
+      if ((byte(i + k) & 0xc0) != 0x80) return i;
     }
     const unsigned second = byte(i + 1);
     const bool overlong = (lead == 0xe0 && second < 0xa0) || (lead == 0xf0 && second < 0x90);
     const bool beyond = (lead == 0xed && second >= 0xa0) || (lead == 0xf4 && second >= 0x90);
-    if (overlong || beyond) return false;
+    if (overlong || beyond) return i;
     i += length;
   }
-  return true;
+  return std::nullopt;
 }
 
 }  // namespace framesim

@@ -40,7 +40,7 @@ class LineReader {
   int line_ = 0;
 };
 
-// Whether `text` is UTF-8 (no overlong forms, no surrogates).
-bool is_utf8(std::string_view text);
+// The offset of the first byte that is not UTF-8 (overlong forms and surrogates are not), or nothing.
+std::optional<std::size_t> find_invalid_utf8(std::string_view text);
 
 }  // namespace framesim

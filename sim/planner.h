@@ -15,7 +15,8 @@ struct PlanInput {
   double target_s = 0;
   double before_draw_s = 0;  // CPU time before the first command: logic, visibility, decision, frame setup
   double submit_s = 0;       // CPU time to submit the commands
-  double fixed_gpu_s = 0;    // clear and swap
+  double clear_s = 0;        // GPU time before the first command
+  double swap_s = 0;         // after the last command, before the frame is shown
   Overlap overlap{};
 };
 

@@ -103,7 +103,8 @@ double Simulation::plan_budget() const {
        .before_draw_s = parts_.estimator.logic_s(record_.visible) + to_seconds(Picoseconds(record_.visibility_ps)) +
                         last_decide_s_ + machine.frame_setup_s,
        .submit_s = machine.submit_s * static_cast<double>(record_.visible),
-       .fixed_gpu_s = machine.clear_s + machine.swap_s,
+       .clear_s = machine.clear_s,
+       .swap_s = machine.swap_s,
        .overlap = machine.overlap});
 }
 

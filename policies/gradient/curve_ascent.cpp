@@ -12,9 +12,10 @@ namespace {
 constexpr double kFirstResolution = 1e-6;
 
 constexpr int kMostHalvings = 80;    // 16^80 spans more than the doubles in use
-constexpr int kMostBisections = 14;  // of a factor 16: to 0.02 %
+constexpr int kMostBisections = 40;  // of a factor 16: to 3e-12; the money mostly ends it much earlier
 constexpr double kFactor = 16;
-constexpr double kCloseEnough = 1e-3;
+constexpr double kCloseEnough = 1e-3;   // share of the money that may be left
+constexpr double kCloseInPlace = 1e-2;  // ... and of t, where the slope ends the step
 
 }  // namespace
 
@@ -105,7 +106,8 @@ CurveAscent::Step CurveAscent::step(double slope, double most_s) {
     }
     if (!good(point)) return {};
     for (int bisections = 0; bisections < kMostBisections; ++bisections) {
-      if (point.cost_s >= (1 - kCloseEnough) * most_s || beyond <= (1 + kCloseEnough) * t) break;
+      if (point.cost_s >= (1 - kCloseEnough) * most_s) break;
+      if (point.cost_s > 0 && beyond <= (1 + kCloseInPlace) * t) break;
       const double middle = std::sqrt(t) * std::sqrt(beyond);
       const Point there = at(middle);
       if (good(there)) {

@@ -19,6 +19,7 @@ struct CurveVariable {
   double setup_s = 0;
   double rest_s = 0;
   double knee = 0;
+  double first_x = 0;  // below this x there is nothing to see
   double x = 0;
   // Set by settle():
   double cap = 1;      // x can be raised smoothly up to here

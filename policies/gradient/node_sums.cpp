@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "policies/level_rules.h"
+
 namespace framesim {
 namespace {
 
@@ -14,6 +16,7 @@ void add(NodeSum& sum, const NodeSum& child) {
   sum.cost_s += child.cost_s;
   sum.worth += child.worth;
   sum.setup_s += child.setup_s;
+  sum.first_x = std::min(sum.first_x, child.first_x);
   sum.knee = std::min(sum.knee, child.knee);
   sum.height = std::max(sum.height, child.height + 1);
   sum.mixed = sum.mixed || child.mixed;
@@ -30,6 +33,7 @@ NodeSum curve_sum(const Workload& workload, std::size_t item) {
           .cost_s = cost_s,
           .worth = benefit * benefit / cost_s,
           .setup_s = setup_s,
+          .first_x = NodeSums::first_x(workload, item),
           .knee = setup_s > 0 ? workload.curve_knee[item] : 1,
           .mixed = workload.type_of(item).shape != CurveShape::square_root};
 }
@@ -38,6 +42,11 @@ NodeSum curve_sum(const Workload& workload, std::size_t item) {
 
 bool NodeSums::culled(const Workload& workload, std::size_t item, double cull_px) {
   return workload.projected_area_px[item] < cull_px || !(workload.benefit[workload.finest(item)] > 0);
+}
+
+double NodeSums::first_x(const Workload& workload, std::size_t item) {
+  const double count = primitives(workload.level_facts(item, 0));
+  return count > 1 ? 1 / count : count > 0 ? 1 : 0;
 }
 
 void NodeSums::build(const Workload& workload, double cull_px) {

@@ -15,6 +15,7 @@ struct NodeSum {
   double cost_s = 0;   // sum of c_i, the costs at x = 1
   double worth = 0;    // sum of b_i^2 / c_i
   double setup_s = 0;
+  double first_x = 1;  // the least resolution at which one of them shows a primitive
   double knee = 1;     // the least of those that have set-up
   int height = 0;      // steps down to the deepest item
   bool mixed = false;  // something below cannot share: an item with levels, a linear curve
@@ -42,6 +43,8 @@ class NodeSums {
   // One pass from the last item to the first. Curves of less projected area than `cull_px`, or without benefit, are left out.
   void build(const Workload& workload, double cull_px);
   const NodeSum& operator[](std::size_t item) const { return sums_[item]; }
+  // The resolution at which a curve shows its first primitive; 0 if it states no primitives.
+  static double first_x(const Workload& workload, std::size_t item);
   static bool culled(const Workload& workload, std::size_t item, double cull_px);
 
   // May the curves below bundle `item` share one variable with a loss of less than `theta`? `budget_s` is what all curves

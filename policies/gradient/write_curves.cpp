@@ -3,15 +3,15 @@
 #include <algorithm>
 
 #include "policies/gradient/node_sums.h"
-#include "policies/level_rules.h"
 
 namespace framesim {
 namespace {
 
-// A curve needs at least one primitive to be seen; one that states no primitives is seen at any x > 0.
+// Most curves that spend_rest() raises: each is a pass over all curves, and all but the last end at x = 1.
+constexpr int kMostRaises = 4;
+
 bool seen(const Workload& workload, std::size_t item, double x) {
-  const double count = primitives(workload.level_facts(item, 0));
-  return x > 0 && (count <= 0 || x * count >= 1);
+  return x > 0 && x >= NodeSums::first_x(workload, item);
 }
 
 void set_curve(const Workload& workload, std::size_t item, double x, Selection& selection) {
@@ -39,19 +39,33 @@ void write_curves(const Workload& workload, const CurveAscent& ascent, double cu
   selection.operations += static_cast<std::int64_t>(curves.size());
 }
 
+namespace {
+
+struct Raise {
+  double gain = 0;
+  double x = 0;
+  std::size_t item = 0;
+};
+
+}  // namespace
+
 void spend_rest(const Workload& workload, double budget_s, const std::vector<std::uint32_t>& curves,
                 Selection& selection) {
   double rest_s = budget_s - selected_cost_s(workload, selection);
-  for (const std::uint32_t i : curves) {
-    if (!(rest_s > 0)) break;
-    const double x = selection.resolution[i];
-    if (x >= 1) continue;
-    const double present_s = curve_cost_s(workload, i, x);
-    const double finer = curve_resolution(workload, i, present_s + rest_s);
-    ++selection.operations;
-    if (!(finer > x) || !seen(workload, i, finer)) continue;
-    set_curve(workload, i, finer, selection);
-    rest_s -= curve_cost_s(workload, i, finer) - present_s;
+  for (int raises = 0; raises < kMostRaises && rest_s > 0; ++raises) {
+    Raise best;
+    for (const std::uint32_t i : curves) {
+      const double x = selection.resolution[i];
+      if (x >= 1) continue;
+      const double finer = curve_resolution(workload, i, curve_cost_s(workload, i, x) + rest_s);
+      const double gain = curve_benefit(workload, i, finer) - curve_benefit(workload, i, x);
+      if (gain > best.gain && seen(workload, i, finer)) best = {gain, finer, i};
+    }
+    selection.operations += static_cast<std::int64_t>(curves.size());
+    if (!(best.gain > 0)) return;
+    rest_s += curve_cost_s(workload, best.item, selection.resolution[best.item]);
+    set_curve(workload, best.item, best.x, selection);
+    rest_s -= curve_cost_s(workload, best.item, best.x);
   }
 }
 

@@ -14,7 +14,7 @@ namespace framesim {
 void write_curves(const Workload& workload, const CurveAscent& ascent, double cull_px, Selection& selection,
                   std::vector<std::uint32_t>& curves);
 
-// The first of `curves` that can use what the selection leaves of the budget take it.
+// Gives what the selection leaves of the budget to the curve that gains most from it, up to four times.
 void spend_rest(const Workload& workload, double budget_s, const std::vector<std::uint32_t>& curves,
                 Selection& selection);
 

@@ -38,7 +38,7 @@ const ParameterTable<MuseumParameters>& parameters() {
       {"door_height", &MuseumParameters::door_height, {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of openings"}},
       {"pillar", &MuseumParameters::pillar, {.unit = "m", .low = 0, .high = 1e3, .help = "wall left on each side of an opening"}},
       {"statues", &MuseumParameters::statues, {.low = 0, .high = 1e6, .help = "number of statues"}},
-      {"samples", &MuseumParameters::samples, {.low = 1, .high = 1e6, .help = "sight lines a cell"}},
+      {"samples", &MuseumParameters::samples, {.low = 0, .high = 1e6, .help = "sight lines a cell; 0: none are made"}},
   }};
   return table;
 }
@@ -148,7 +148,7 @@ class Museum final : public Generator {
     for (const Joint& joint : joints) add_portal(scene, plan, joint, first);
     add_statues(scene, plan, first, random, where);
     scene.instances.cell.resize(scene.instances.size(), kNoCell);
-    if (scene.visibility == VisibilityMethod::cells) {
+    if (p_.samples > 0) {
       make_cell_visibility(scene, static_cast<int>(p_.samples), static_cast<std::uint64_t>(p_.seed));
     }
   }

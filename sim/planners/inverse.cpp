@@ -1,20 +1,18 @@
 // The drawing time at which the machine's own overlap (MODEL section 2) gives exactly the target.
 //
-//   staged, one frame in flight    before_draw + fixed + t_r = target: the CPU starts when the last frame is shown, and
-//   the
-//                                  GPU waits for the first command. Submission runs beside drawing. If submission alone
-//                                  is longer than what is left, less drawing does not make the frame shorter: same
-//                                  budget.
-//   staged, more in flight         fixed + t_r = target: frames follow one another at the pace of the slower of CPU and
-//   GPU.
-//                                  If the CPU is the slower (before_draw + submit > target) the target is missed
-//                                  whatever is drawn, and drawing for a whole target still costs nothing: same budget.
+//   staged, one frame in flight    before_draw + clear + t_r + swap = target: the CPU starts when the last frame is
+//                                  shown, and the GPU waits for the first command. Submission runs beside drawing. If
+//                                  submission alone is longer than what is left, less drawing does not make the frame
+//                                  shorter: same budget.
+//   staged, more in flight         clear + t_r = target: frames follow one another at the pace of the slower of CPU and
+//                                  GPU, and the swap runs beside the next frame. If the CPU is the slower
+//                                  (before_draw + submit > target) the target is missed whatever is drawn, and drawing
+//                                  for a whole target still costs nothing: same budget.
 //   closed forms, T = max + s*min  t_r = target - s*t_l if that is >= t_l, else (target - t_l)/s; 0 if t_l >= target.
-//                                  t_r contains the fixed part.
+//                                  t_r contains clear and swap.
 //
-// The fixed GPU time (clear, swap) is taken off throughout. Known failure: it is exact for the estimates that it is
-// given, and takes the GPU's time for the sum of the draws' (see estimators/oracle.cpp); nothing is kept in reserve for
-// errors.
+// Known failure: it is exact for the estimates that it is given, and takes the GPU's time for the sum of the draws' (see
+// estimators/oracle.cpp); nothing is kept in reserve for errors.
 #include <algorithm>
 
 #include "sim/planner.h"
@@ -51,15 +49,18 @@ double closed_form_inverse(double logic_s, double target_s, double share) {
 
 double drawing_time(const PlanInput& input) {
   if (input.overlap.kind != OverlapKind::staged) {
-    return closed_form_inverse(input.before_draw_s + input.submit_s, input.target_s, serial_share(input.overlap));
+    const double busy_s =
+        closed_form_inverse(input.before_draw_s + input.submit_s, input.target_s, serial_share(input.overlap));
+    return busy_s - input.clear_s - input.swap_s;
   }
-  return input.overlap.frames_in_flight > 1 ? input.target_s : input.target_s - input.before_draw_s;
+  if (input.overlap.frames_in_flight > 1) return input.target_s - input.clear_s;
+  return input.target_s - input.before_draw_s - input.clear_s - input.swap_s;
 }
 
 class InversePlanner final : public Planner {
  public:
   double budget_s(const PlanInput& input) const override {
-    return std::clamp(drawing_time(input) - input.fixed_gpu_s, 0.0, input.target_s);
+    return std::clamp(drawing_time(input), 0.0, input.target_s);
   }
 };
 

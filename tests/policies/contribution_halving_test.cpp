@@ -182,8 +182,8 @@ TEST_CASE("contribution-halving as printed is cut off where it would not end") {
   const Selection s = w.select(*policy, 1);
   CHECK(s.level == Levels{1});
   CHECK(s.operations == 1 + 2 * 1000);  // and the first contribution
-  // Nor does lowering where the coarsest level has no triangles to take off: B, behind, holds the count at 30, and A, in
-  // front and so the smallest, is lowered for ever.
+  // Nor does lowering where the coarsest level has no triangles to take off: B, behind, holds the count at 30, and A,
+  // in front and so the smallest, is lowered for ever.
   TestWorkload two;
   add_model(two, {0, 5}, 1, 10);
   add_model(two, {30}, 1, -10);

@@ -59,7 +59,8 @@ TEST_CASE("a pose keeps up as near to +y as it can", "[camera]") {
 TEST_CASE("a polyline with frames goes from end to end at constant speed", "[camera]") {
   // 30 m + 10 m in 41 frames: 40 steps of 1 m; the corner at 30 m is pose 30, which already looks along the second line.
   std::vector<Pose> poses;
-  append_leg(poses, PolylineLeg{.points = {{0, 2, 0}, {0, 2, -30}, {10, 2, -30}}, .look_at = {}}, {.frames = 41, .step = {}});
+  append_leg(poses, PolylineLeg{.points = {{0, 2, 0}, {0, 2, -30}, {10, 2, -30}}, .look_at = {}},
+             {.frames = 41, .step = {}});
   REQUIRE(poses.size() == 41);
   check_vector(poses.front().eye, {0, 2, 0});
   check_vector(poses[29].eye, {0, 2, -29});
@@ -75,7 +76,8 @@ TEST_CASE("a polyline of corners on whole steps is even for any scale", "[camera
   for (const double scale : {1e-3, 1.0, 1e6}) {
     CAPTURE(scale);
     std::vector<Pose> poses;
-    const PolylineLeg leg{.points = {{0, 0, 0}, {3 * scale, 0, 0}, {3 * scale, 0, 4 * scale}, {0, 0, 0}}, .look_at = {}};
+    const PolylineLeg leg{.points = {{0, 0, 0}, {3 * scale, 0, 0}, {3 * scale, 0, 4 * scale}, {0, 0, 0}},
+                          .look_at = {}};
     append_leg(poses, leg, {.frames = 25, .step = {}});
     CHECK(unevenness(poses) < 1e-6);
   }
@@ -143,12 +145,12 @@ TEST_CASE("a turn by steps of 3 degrees takes 30 frames for 90, to the right if 
 
 TEST_CASE("a spline passes its points and is even to one part in a million", "[camera]") {
   // Points that are unevenly apart, where a spline in its own parameter would change speed by a factor of ten. The chord of
-  // a step s on a curve of radius R is shorter than its arc by s^2 / (24 R^2): with 20,000 frames on 62 m (3 mm) and R above
-  // 0.5 m that is below 2e-6 / 24 and does not show.
+  // a step s on a curve of radius R is shorter than its arc by s^2 / (24 R^2): with 60,000 frames on 66 m (1.1 mm) and R
+  // above 0.3 m that is below 6e-7.
   const std::vector<glm::dvec3> points = {{0, 0, 0}, {1, 0, 0}, {1.5, 2, -20}, {20, 1, -22}, {21, 0, -42}};
   std::vector<Pose> poses;
-  append_leg(poses, SplineLeg{.points = points, .look_at = {}}, {.frames = 20'000, .step = {}});
-  REQUIRE(poses.size() == 20'000);
+  append_leg(poses, SplineLeg{.points = points, .look_at = {}}, {.frames = 60'000, .step = {}});
+  REQUIRE(poses.size() == 60'000);
   CHECK(unevenness(poses) < 1e-6);
   check_vector(poses.front().eye, points.front());
   check_vector(poses.back().eye, points.back());
@@ -186,17 +188,27 @@ TEST_CASE("a spline that turns straight back still looks somewhere", "[camera]")
 TEST_CASE("what is no path is refused at its place", "[camera]") {
   std::vector<Pose> none, one{make_pose({0, 0, 0}, {0, 0, -1})};
   const LegLength ten{.frames = 10, .step = {}};
-  const auto line = [](std::vector<glm::dvec3> points) { return PolylineLeg{.points = std::move(points), .look_at = {}}; };
+  const auto line = [](std::vector<glm::dvec3> points) {
+    return PolylineLeg{.points = std::move(points), .look_at = {}};
+  };
   CHECK(says(refusal([&] { append_leg(none, line({{0, 0, 0}}), ten, kHere); }), "t.toml:7:3", "at least 2"));
-  CHECK(says(refusal([&] { append_leg(none, line({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}), ten, kHere); }), "t.toml:7:3",
-             "points 2 and 3 coincide"));
-  CHECK(says(refusal([&] { append_leg(none, SplineLeg{.points = {{1, 0, 0}, {1, 0, 0}}, .look_at = {}}, ten, kHere); }),
+  CHECK(says(refusal([&] {
+               append_leg(none, line({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}), ten, kHere);
+             }),
+             "t.toml:7:3", "points 2 and 3 coincide"));
+  CHECK(says(refusal([&] {
+               append_leg(none, SplineLeg{.points = {{1, 0, 0}, {1, 0, 0}}, .look_at = {}}, ten, kHere);
+             }),
              "t.toml:7:3", "points 1 and 2 coincide"));
   CHECK(says(refusal([&] { append_leg(none, TurnLeg{.angle_rad = 1}, ten, kHere); }), "t.toml:7:3", "first leg"));
   CHECK(says(refusal([&] { append_leg(one, TurnLeg{.angle_rad = 0}, ten, kHere); }), "t.toml:7:3", "turn by 0"));
-  CHECK(says(refusal([&] { append_leg(one, line({{0, 0, 0}, {1, 0, 0}}), {.frames = {}, .step = 2.0}, kHere); }), "t.toml:7:3",
-             "longer than the leg"));
-  CHECK(says(refusal([&] { append_leg(none, line({{0, 0, 0}, {1e9, 0, 0}}), {.frames = {}, .step = 1e-9}, kHere); }),
+  CHECK(says(refusal([&] {
+               append_leg(one, line({{0, 0, 0}, {1, 0, 0}}), {.frames = {}, .step = 2.0}, kHere);
+             }),
+             "t.toml:7:3", "longer than the leg"));
+  CHECK(says(refusal([&] {
+               append_leg(none, line({{0, 0, 0}, {1e9, 0, 0}}), {.frames = {}, .step = 1e-9}, kHere);
+             }),
              "t.toml:7:3", "allowed: 1000000"));
   const PolylineLeg through{.points = {{0, 0, 0}, {4, 0, 0}}, .look_at = glm::dvec3(2, 0, 0)};
   CHECK(says(refusal([&] { append_leg(none, through, {.frames = 3, .step = {}}, kHere); }), "t.toml:7:3",

@@ -71,7 +71,7 @@ TEST_CASE("a CSV is refused at file, line and column", "[csv]") {
       {"type,x\noak,3m\n", "a.csv:2:5", "'3m' is not a number"},
       {"type,x,scale\noak,1,two\n", "a.csv:2:7", "scale: 'two'"},
       {"type,x\n\"oak\",1\n", "a.csv:2:1", "quotation mark"},
-      {"type,x\noak,1\n\xff\xfe,1\n", "a.csv:3", "not UTF-8"},
+      {"type,x\noak,1\n\xff\xfe,1\n", "a.csv:3:1", "not UTF-8"},
   };
   for (const Case& c : cases) CHECK(says(read_all(c.text), c.where, c.words));
 }
@@ -81,11 +81,15 @@ TEST_CASE("too long a line is refused without reading on", "[csv]") {
   const TempFolder folder;
   const std::string path = folder.write("a.csv", "");
   std::filesystem::resize_file(path, kLargestCsvFile);
-  CHECK(says(refusal([&] { CsvReader(path, "a.csv", kNeeded, kOptional, {"t.toml", 3, 7}); }), "a.csv:1",
-             "a line of more than 1048576 bytes"));
+  CHECK(says(refusal([&] {
+               CsvReader(path, "a.csv", kNeeded, kOptional, {"t.toml", 3, 7});
+             }),
+             "a.csv:1", "a line of more than 1048576 bytes"));
   std::filesystem::resize_file(path, kLargestCsvFile + 1);
-  CHECK(says(refusal([&] { CsvReader(path, "a.csv", kNeeded, kOptional, {"t.toml", 3, 7}); }), "t.toml:3:7",
-             "has 1073741825 bytes; allowed: 1073741824"));
+  CHECK(says(refusal([&] {
+               CsvReader(path, "a.csv", kNeeded, kOptional, {"t.toml", 3, 7});
+             }),
+             "t.toml:3:7", "has 1073741825 bytes; allowed: 1073741824"));
 }
 
 TEST_CASE("the longest line is read, one byte more is not", "[csv]") {
@@ -115,13 +119,20 @@ TEST_CASE("what cannot be opened is refused where it was named", "[csv]") {
 }
 
 TEST_CASE("UTF-8 is told from what only looks like it", "[csv]") {
-  CHECK(is_utf8("plain"));
-  CHECK(is_utf8("S\xc3\xa9quin \xe2\x82\xac \xf0\x9f\x8c\xb3"));
-  CHECK_FALSE(is_utf8("\xc3"));              // cut off
-  CHECK_FALSE(is_utf8("\x80"));              // begins inside a character
-  CHECK_FALSE(is_utf8("\xc0\xaf"));          // overlong '/'
-  CHECK_FALSE(is_utf8("\xe0\x80\xaf"));      // overlong in three
-  CHECK_FALSE(is_utf8("\xf0\x8f\xbf\xbf"));  // overlong in four
-  CHECK_FALSE(is_utf8("\xed\xa0\x80"));      // surrogate
-  CHECK_FALSE(is_utf8("\xf4\x90\x80\x80"));  // beyond U+10FFFF
+  CHECK_FALSE(find_invalid_utf8("plain"));
+  CHECK_FALSE(find_invalid_utf8("S\xc3\xa9quin \xe2\x82\xac \xf0\x9f\x8c\xb3"));
+  CHECK(find_invalid_utf8("ab"
+                          "\xc3") == 2);  // cut off
+  CHECK(find_invalid_utf8("ab"
+                          "\x80") == 2);  // begins inside a character
+  CHECK(find_invalid_utf8("ab"
+                          "\xc0\xaf") == 2);  // overlong '/'
+  CHECK(find_invalid_utf8("ab"
+                          "\xe0\x80\xaf") == 2);  // overlong in three
+  CHECK(find_invalid_utf8("ab"
+                          "\xf0\x8f\xbf\xbf") == 2);  // overlong in four
+  CHECK(find_invalid_utf8("ab"
+                          "\xed\xa0\x80") == 2);  // surrogate
+  CHECK(find_invalid_utf8("ab"
+                          "\xf4\x90\x80\x80") == 2);  // beyond U+10FFFF
 }

@@ -49,7 +49,8 @@ TEST_CASE("a whole machine profile is read", "[machine_file]") {
   CHECK(m.overlap.frames_in_flight == 2);
   CHECK(costs(m, Algorithm::flat).polygon_s == 7e-6);
   CHECK(costs(m, Algorithm::flat).draw_s == 0);  // the default is for algorithms that are not listed at all
-  for (const Algorithm a : {Algorithm::gouraud, Algorithm::textured, Algorithm::lines, Algorithm::points, Algorithm::splats}) {
+  for (const Algorithm a :
+       {Algorithm::gouraud, Algorithm::textured, Algorithm::lines, Algorithm::points, Algorithm::splats}) {
     CHECK(costs(m, a).draw_s == 1e-6);
     CHECK(costs(m, a).polygon_s == 100e-9);
     CHECK(costs(m, a).vertex_s == 50e-9);
@@ -115,15 +116,18 @@ TEST_CASE("an unknown machine is answered with the legal set", "[machine_file]")
   };
   CHECK(says(load("vgx321"), "command line", "unknown machine 'vgx321'; allowed: street, vgx320, graphicon2005"));
   CHECK(says(load("vgx321"), "command line", "did you mean 'vgx320'?"));
-  CHECK(says(load("street", {{"submit", "1us", {"command line"}}}), "command line", "unknown parameter 'submit'; allowed: none"));
+  CHECK(says(load("street", {{"submit", "1us", {"command line"}}}), "command line",
+             "unknown parameter 'submit'; allowed: none"));
 }
 
 TEST_CASE("a machine can be a file", "[machine_file]") {
   const TempFolder folder;
-  const std::string path = folder.write("fast.toml", machine("source = \"s\"\n[machine.algorithm.flat]\npolygon = \"1us\"\n"));
+  const std::string path =
+      folder.write("fast.toml", machine("source = \"s\"\n[machine.algorithm.flat]\npolygon = \"1us\"\n"));
   CHECK(load_machine({.name = path, .settings = {}, .where = {}}).name == "m");
   const std::string missing = folder.path("none.toml");
-  CHECK(says(refusal([&] { load_machine({.name = missing, .settings = {}, .where = {}}); }), missing + ":1", "no such file"));
+  CHECK(says(refusal([&] { load_machine({.name = missing, .settings = {}, .where = {}}); }), missing + ":1",
+             "no such file"));
 }
 
 TEST_CASE("an algorithm that the machine does not list is found for each way of using it", "[machine_file]") {

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "sim/recurrence.h"
@@ -89,6 +91,22 @@ TEST_CASE("the path that leads into an earlier frame ends in backlog") {
   CHECK(parts(engine.run(make_frame(3, 0, {{1, 1, 4}, {1, 6, 1}, {1, 1, 1}}).work())) == Parts{0, 0, 7, 1, 22, 0});
 }
 
+// FIFO 1 holds one command, FIFO 2 eight. P of the three commands: 1, 1, 3: command 2 is submitted at 1+2 = 3, and command 1
+// makes place at 3; it starts at 3, when command 1 leaves, too. Back from 4 the walk stays with command 2: its primitive 1,
+// submit 2, then submit 0 and 1 of commands 1 and 0. (The other way at the ties it would be primitive 3, submit 1.)
+TEST_CASE("a tie at submission or at the per-primitive stage stays with the command") {
+  StagedRecurrence engine(staged(1, 8, 1), true);
+  CHECK(parts(engine.run(make_frame(0, 0, {{1, 2, 0}, {0, 0, 0}, {2, 1, 0}}).work())) == Parts{0, 3, 1, 0, 0, 0});
+}
+
+// FIFOs of one command. S1, E1, S2, E2 of the three commands: 0 1 1 11 | 1 2 11 11 | 2 11 11 12. Command 2 is done at 2+9 = 11,
+// when command 1 makes place, and starts at once, when command 1 leaves. The walk stays with command 2: pixel 1, primitive 9,
+// then primitive 1 and 1 of commands 1 and 0. (The other way it would be pixel 1+10, primitive 1.)
+TEST_CASE("a tie at the per-pixel stage or before it stays with the command") {
+  StagedRecurrence engine(staged(1, 1, 1), true);
+  CHECK(parts(engine.run(make_frame(0, 0, {{0, 1, 10}, {0, 1, 0}, {0, 9, 1}}).work())) == Parts{0, 0, 11, 1, 0, 0});
+}
+
 TEST_CASE("without being asked for, the critical path is all zero") {
   StagedRecurrence engine(staged(2, 1, 1));
   CHECK(parts(engine.run(make_frame(10, 2, {{1, 4, 9}}).work())) == Parts(6, 0));
@@ -118,8 +136,8 @@ TEST_CASE("on random pipelines the parts are never negative, sum to the latency 
   CHECK(with_backlog > 500);
 }
 
-// What the parts mean: work that is not on the path can be halved without harm (max-plus: with a longest path that avoids
-// it, the frame is no earlier and no later).
+// What the parts mean: the path is a longest one, so work that is not on it can be halved, and the frame is shown neither
+// earlier nor later.
 TEST_CASE("taking away work that is not on the critical path leaves the frame as it was") {
   std::int64_t tried = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {

@@ -1,6 +1,8 @@
 #include "sim/engine.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -147,10 +149,13 @@ TEST_CASE("with large FIFOs, one frame in flight and free submission a frame is 
     SplitMix random(seed);
     StagedRecurrence engine(staged(1000, 1000, 1));
     for (int k = 0; k < 5; ++k) {
-      PipelineFrame frame = make_frame(random.between(0, 500), random.between(0, 9), {});
+      const std::int64_t cpu_before = random.between(0, 500), swap = random.between(0, 9);
+      PipelineFrame frame = make_frame(cpu_before, swap, {});
       const std::int64_t count = random.between(1, 40);
-      for (std::int64_t i = 0; i < count; ++i)
-        add_command(frame.commands, 0, random.between(0, 30), random.between(0, 30));
+      for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t primitive = random.between(0, 30), pixel = random.between(0, 30);
+        add_command(frame.commands, 0, primitive, pixel);
+      }
       std::int64_t gpu = 0;
       const auto& primitive = frame.commands.primitive_ps;
       const auto& pixel = frame.commands.pixel_ps;

@@ -25,7 +25,7 @@ PlanInput closed_form(double target_s, double logic_s, double share) {
 }  // namespace
 
 TEST_CASE("target planner: the whole target, whatever the CPU does") {
-  CHECK(budget("target", {.target_s = 0.025, .before_draw_s = 0.02, .submit_s = 0.01, .fixed_gpu_s = 0.001}) == 0.025);
+  CHECK(budget("target", {.target_s = 0.025, .before_draw_s = 0.02, .submit_s = 0.01, .clear_s = 0.001}) == 0.025);
 }
 
 TEST_CASE("paper planner: eq. 5-7 at three quarters of the target") {
@@ -60,7 +60,8 @@ TEST_CASE("inverse planner: closed forms by hand") {
   // submission is CPU time, clear and swap are drawing time
   PlanInput input = closed_form(1, 0.5, 1);
   input.submit_s = 0.125;
-  input.fixed_gpu_s = 0.125;
+  input.clear_s = 0.0625;
+  input.swap_s = 0.0625;
   CHECK(budget("inverse", input) == 0.25);
 }
 
@@ -85,7 +86,7 @@ TEST_CASE("inverse planner: put back into the overlap, the budget gives the targ
 }
 
 TEST_CASE("inverse planner: staged with one frame in flight, drawing follows what the CPU does before it") {
-  PlanInput input{.target_s = 0.025, .before_draw_s = 0.010, .submit_s = 0.004, .fixed_gpu_s = 0.001};
+  PlanInput input{.target_s = 0.025, .before_draw_s = 0.010, .submit_s = 0.004, .clear_s = 0.0007, .swap_s = 0.0003};
   input.overlap = {.kind = OverlapKind::staged, .frames_in_flight = 1};
   CHECK(budget("inverse", input) == Approx(0.014).epsilon(1e-12));
   input.submit_s = 0.020;  // the CPU is late whatever is drawn: drawing less would not help
@@ -95,7 +96,8 @@ TEST_CASE("inverse planner: staged with one frame in flight, drawing follows wha
 }
 
 TEST_CASE("inverse planner: staged with more frames in flight, CPU work is hidden behind the frame before") {
-  PlanInput input{.target_s = 0.025, .before_draw_s = 0.010, .submit_s = 0.004, .fixed_gpu_s = 0.001};
+  // ... and so is the swap: only the clear is taken off.
+  PlanInput input{.target_s = 0.025, .before_draw_s = 0.010, .submit_s = 0.004, .clear_s = 0.001, .swap_s = 0.005};
   input.overlap = {.kind = OverlapKind::staged, .frames_in_flight = 2};
   CHECK(budget("inverse", input) == Approx(0.024).epsilon(1e-12));
   input.before_draw_s = 0.030;
@@ -104,16 +106,17 @@ TEST_CASE("inverse planner: staged with more frames in flight, CPU work is hidde
 
 TEST_CASE("inverse planner: run through the staged pipeline, the budget gives the target to the picosecond") {
   // 10 ms before the first command, clear 1 ms; the budget is drawn in the per-pixel stage by 8 commands. With one
-  // frame in flight swap (0.5 ms) is on the way as well; with two it runs beside the next frame, so it is 0 there.
+  // frame in flight swap (0.5 ms) is on the way as well; with two it runs beside the next frame.
   for (const int frames_in_flight : {1, 2}) {
     CAPTURE(frames_in_flight);
     MachineProfile profile;
     profile.overlap = {.kind = OverlapKind::staged, .frames_in_flight = frames_in_flight};
-    const double swap_s = frames_in_flight == 1 ? 0.5e-3 : 0;
+    const double swap_s = 0.5e-3;
     const double draw_s = budget("inverse", {.target_s = 0.025,
                                              .before_draw_s = 0.010,
                                              .submit_s = 0,
-                                             .fixed_gpu_s = 0.001 + swap_s,
+                                             .clear_s = 0.001,
+                                             .swap_s = swap_s,
                                              .overlap = profile.overlap});
     CommandColumns commands;
     commands.submit_ps.assign(9, 0);
@@ -146,7 +149,8 @@ TEST_CASE("every planner: budgets stay in 0..target, and unknown parameters are 
       const double planned = planner->budget_s({.target_s = 0.025,
                                                 .before_draw_s = milliseconds(0),
                                                 .submit_s = milliseconds(1),
-                                                .fixed_gpu_s = milliseconds(2),
+                                                .clear_s = milliseconds(2) / 2,
+                                                .swap_s = milliseconds(2) / 2,
                                                 .overlap = overlap});
       CAPTURE(i, planned);
       REQUIRE((planned >= 0 && planned <= 0.025));

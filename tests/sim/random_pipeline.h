@@ -73,7 +73,9 @@ inline Pipeline random_pipeline(std::uint64_t seed) {
     if (vsync) frame.vsync_period = varying ? random.between(0, period) : period;
     const std::int64_t commands = random.between(1, 40);
     for (std::int64_t i = 0; i < commands; ++i) {
-      add_command(frame.commands, duration(submit), duration(primitive), duration(pixel));
+      const std::int64_t of_submit = duration(submit);  // one after the other: the order of arguments is the compiler's
+      const std::int64_t of_primitive = duration(primitive), of_pixel = duration(pixel);
+      add_command(frame.commands, of_submit, of_primitive, of_pixel);
     }
   }
   return pipeline;
