@@ -83,10 +83,9 @@ void add_compare(CLI::App& app, Session& session) {
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "A policy holds its target if the 95th percentile of frame time is at most 1.10 times the target.\n"
-      "Without arguments: all policies on all built-in scenes at each scene's first target; a scene of more than "
-      "100,000\n"
-      "instances runs its first 100 frames. The csv has a hash of all frame records: equal hashes, equal runs, bit for "
-      "bit.\n"
+      "Without arguments: all policies on all built-in scenes at each scene's first target. The csv has a hash of all "
+      "frame\n"
+      "records: equal hashes, equal runs, bit for bit.\n"
       "Examples:\n"
       "  framesim compare\n"
       "  framesim compare --scenes street,auditorium --policies robin-hood:value=8,levels=no,static --targets "

@@ -71,8 +71,6 @@ std::vector<Job> plan_comparison(const ComparisonOptions& options, const InputLo
         job.spec.scene = name;
         job.spec.policy = policy;
         job.spec.target_s = target_s;
-        const bool large = scene->instances.size() > kLargeScene;
-        if (options.shared.frames.empty() && large) job.spec.frames = kFramesOfLargeScene;
         check_parts(job.spec, *scene);
         jobs.push_back(std::move(job));
       }

@@ -9,11 +9,6 @@
 
 namespace framesim {
 
-// Scenes with more instances than this run only their first kFramesOfLargeScene frames unless --frames says otherwise,
-// so that a comparison without arguments stays under a minute.
-inline constexpr std::size_t kLargeScene = 100'000;
-inline constexpr std::int64_t kFramesOfLargeScene = 100;
-
 struct ComparisonOptions {
   std::vector<std::string> scenes;    // empty: all built-in ones
   std::vector<std::string> policies;  // empty: all

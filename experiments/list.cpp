@@ -12,7 +12,6 @@
 #include "sim/effect.h"
 #include "sim/estimator.h"
 #include "sim/planner.h"
-#include "sim/quantity.h"
 
 namespace framesim {
 namespace {

@@ -23,7 +23,7 @@ EngineKind read_fidelity(const std::string& text, const InputLocation& where) {
 }
 
 std::int64_t read_frames(const std::string& text, const InputLocation& where) {
-  if (text.empty() || text == "all") return 0;
+  if (text == "all") return 0;
   const QuantityResult count = parse_number(text);
   const bool whole = count.value && *count.value >= 1 && *count.value <= kMostFrames &&
                      *count.value == static_cast<double>(static_cast<std::int64_t>(*count.value));
@@ -117,7 +117,9 @@ void add_shared_options(CLI::App& app, SharedOptions& options) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   app.add_option("--seed", options.seed, "Master seed of all effects")->type_name("N")->capture_default_str();
-  app.add_option("--frames", options.frames, "Run at most N frames of the camera path, or all")->type_name("N");
+  app.add_option("--frames", options.frames, "Run at most N frames of the camera path, or all")
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option(
          "--fidelity", options.fidelity,
          "How frame times are computed: auto, recurrence (exact), events (the same through an event queue, slow), "

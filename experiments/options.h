@@ -18,7 +18,7 @@ struct SharedOptions {
   std::string estimator{kDefaultEstimator};
   std::string machine, overlap, planner;  // empty: not given
   std::vector<std::string> effects, no_effects;
-  std::string frames;  // a count or "all"; empty: the verb's default
+  std::string frames = "all";  // or a count
   std::string fidelity = "auto";
   std::string seed = "1";
   bool verify = false;

@@ -11,7 +11,7 @@
 #include "experiments/blocks.h"
 #include "experiments/gnuplot.h"
 #include "experiments/output_file.h"
-#include "sim/quantity.h"
+#include "experiments/table.h"
 
 namespace framesim {
 namespace {
@@ -47,15 +47,30 @@ std::string legend(const RunResult& r) {
 
 std::string heading(const Block& block) {
   const RunResult& r = *block.front();
-  return fmt::format("{}, target {}", r.scene, format_duration(r.target_s));
+  return fmt::format("{}, target {}", r.scene, show_target(r.target_s));
 }
 
-// Colours that stay apart for most colour-blind readers (Okabe and Ito), then dark ones.
-std::string_view color_of(std::size_t index) {
-  static constexpr std::array<std::string_view, 12> kColors = {"#D55E00", "#E69F00", "#CC79A7", "#999933",
-                                                               "#0072B2", "#009E73", "#56B4E9", "#332288",
-                                                               "#882255", "#44AA99", "#661100", "#000000"};
-  return kColors[index % kColors.size()];
+// Cool colours hold the target, warm ones miss it; within each row they differ in lightness, for colour-blind readers.
+std::string_view color_of(bool holding, std::size_t index) {
+  static constexpr std::array<std::string_view, 6> kCool = {"#08306b", "#0072B2", "#56B4E9",
+                                                            "#009E73", "#44AA99", "#6a51a3"};
+  static constexpr std::array<std::string_view, 6> kWarm = {"#7f0000", "#D55E00", "#E69F00",
+                                                            "#CC79A7", "#e7298a", "#8c6d31"};
+  return (holding ? kCool : kWarm)[index % kCool.size()];
+}
+
+// The curves of those that miss are drawn first, those that hold on top of them.
+std::string curves(const Block& block) {
+  std::string script;
+  for (const bool holding : {false, true}) {
+    std::size_t same_kind = 0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      if (holds(*block[i]) != holding) continue;
+      script += fmt::format("$frames{} using 1:2 with lines lw {} lc rgb '{}' title {}, \\\n", i, holding ? 2 : 1.2,
+                            color_of(holding, same_kind++), gnuplot_string(legend(*block[i])));
+    }
+  }
+  return script;
 }
 
 std::string frame_time_script(const Block& block) {
@@ -69,18 +84,16 @@ std::string frame_time_script(const Block& block) {
   script += fmt::format("set xlabel 'frame'\nset ylabel {}\nset yrange [0:{:.6g}]\n",
                         gnuplot_string("frame time in ms" + cut), top_ms * 1.01);
   script +=
-      "set key outside right top noenhanced\nset border 3\nset tics nomirror out\nset grid ytics lc rgb '#dddddd'\n";
+      "set key at graph 1.02, graph 1 left top Left reverse samplen 2 noenhanced\nset rmargin 34\nset border 3\nset "
+      "tics nomirror "
+      "out\nset grid ytics lc rgb '#dddddd'\n";
   script += fmt::format(
       "set object 1 rectangle from graph 0, first 0 to graph 1, first {:.6g} behind fillcolor rgb '#e8f5e9' "
       "fillstyle solid 1 noborder\n",
       target_ms * kHoldTolerance);
-  script += "plot ";
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    script += fmt::format("$frames{} using 1:2 with lines lw {} lc rgb '{}' title {}, \\\n", i,
-                          holds(*block[i]) ? 2.2 : 1.1, color_of(i), gnuplot_string(legend(*block[i])));
-  }
+  script += "plot " + curves(block);
   return script + fmt::format("{:.17g} with lines lw 1.5 dt 2 lc rgb 'black' title {}\n", target_ms,
-                              gnuplot_string("target " + format_duration(block.front()->target_s)));
+                              gnuplot_string("target " + show_target(block.front()->target_s)));
 }
 
 struct MixPart {
@@ -138,7 +151,7 @@ std::string levels_script(const Block& block) {
 
 std::string file_stem(const Block& block) {
   const RunResult& r = *block.front();
-  std::string stem = r.scene + "-" + format_duration(r.target_s);
+  std::string stem = r.scene + "-" + show_target(r.target_s);
   for (char& c : stem) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-' && c != '_') c = '-';
   }

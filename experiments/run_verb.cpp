@@ -14,7 +14,6 @@
 #include "experiments/table.h"
 #include "experiments/verbs.h"
 #include "scenes/registry.h"
-#include "sim/quantity.h"
 
 namespace framesim {
 namespace {
@@ -97,7 +96,7 @@ std::string describe_run(const RunResult& r) {
   line("policy", fmt::format("{}, planner {}, estimator {}", r.policy, r.planner, r.estimator));
   line("effects", effects_text(r));
   line("target",
-       fmt::format("{} ({:.4g} fps), {:.0f} frames measured", format_duration(r.target_s), 1 / r.target_s, s.frames));
+       fmt::format("{} ({:.4g} fps), {:.0f} frames measured", show_target(r.target_s), 1 / r.target_s, s.frames));
   line("holds", fmt::format("{}: 95th percentile {} is {:.2f} times the target (limit {:.2f})", holds(r) ? "yes" : "NO",
                             ms(s.p95_s), s.p95_s / r.target_s, kHoldTolerance));
   line("frame time",

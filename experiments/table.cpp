@@ -97,7 +97,7 @@ std::string format_markdown(std::span<const RunResult> results) {
   for (std::size_t i = 4; i < heading.size(); ++i) out += "--:|";
   out += '\n';
   for (const RunResult& r : results) {
-    std::vector<std::string> cells = {r.scene, format_duration(r.target_s), r.policy, holds(r) ? "yes" : "no"};
+    std::vector<std::string> cells = {r.scene, show_target(r.target_s), r.policy, holds(r) ? "yes" : "no"};
     for (const SummaryColumn& column : summary_columns()) cells.push_back(show_cell(column, r.summary));
     out += markdown_row(cells);
   }
@@ -132,16 +132,27 @@ std::string show_cell(const SummaryColumn& column, const Summary& summary) {
   return fmt::format("{:.{}f}", shown, std::min(fewer, most));
 }
 
+std::string show_target(double target_s) {
+  const std::string exact = format_duration(target_s);
+  if (exact.size() <= 8) return exact;
+  const double rate = 1 / target_s;
+  if (std::abs(rate - std::round(rate)) < 1e-9 * rate) return fmt::format("{:.0f}fps", rate);
+  return fmt::format("{:.4g}ms", target_s * 1e3);
+}
+
 std::string show_heading(const SummaryColumn& column) {
   if (column.value == &Summary::avg_err) return "AvgErr";
+  if (column.value == &Summary::over_target) return "over";
+  if (column.value == &Summary::benefit_share) return "benefit";
+  if (column.value == &Summary::estimator_error) return "est.err";
   std::string name(column.name);
   if (name.ends_with("_s")) name.resize(name.size() - 2);
-  std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
 std::string_view show_unit(const SummaryColumn& column) {
   if (column.unit == "s") return "ms";
+  if (column.value == &Summary::switches || column.value == &Summary::operations) return "/frame";
   return is_share(column) ? "%" : column.unit;
 }
 

@@ -25,6 +25,8 @@ std::string format_text_table(std::span<const RunResult> results, bool color);
 
 // A cell for people: times in milliseconds, shares in per cent, at most four digits that matter.
 std::string show_cell(const SummaryColumn& column, const Summary& summary);
+// "25ms"; a target that has no short form as a duration is shown as a rate ("15fps") or rounded.
+std::string show_target(double target_s);
 // Its heading ("mean", "AvgErr") and unit ("ms", "%", "").
 std::string show_heading(const SummaryColumn& column);
 std::string_view show_unit(const SummaryColumn& column);

@@ -5,7 +5,6 @@
 
 #include "experiments/blocks.h"
 #include "experiments/table.h"
-#include "sim/quantity.h"
 
 namespace framesim {
 namespace {
@@ -64,7 +63,7 @@ std::string joined(const std::vector<std::string>& words) {
 std::string block_title(const RunResult& r) {
   std::string title =
       fmt::format("{}, target {} ({:.4g} fps), {:.0f} frames; machine {}, overlap {}, estimator {}", r.scene,
-                  format_duration(r.target_s), 1 / r.target_s, r.summary.frames, r.machine, r.overlap, r.estimator);
+                  show_target(r.target_s), 1 / r.target_s, r.summary.frames, r.machine, r.overlap, r.estimator);
   if (!r.effects.empty()) title += ", effects " + joined(r.effects);
   return title + '\n';
 }
@@ -109,7 +108,7 @@ std::string overview(std::span<const Block> blocks, const std::vector<std::strin
   std::vector<Cell> scenes = {{"policy", ""}}, targets = {{"", ""}};
   for (const Block& block : blocks) {
     scenes.push_back({block.front()->scene, ""});
-    targets.push_back({format_duration(block.front()->target_s), ""});
+    targets.push_back({show_target(block.front()->target_s), ""});
   }
   grid.add(scenes);
   grid.add(targets);

@@ -15,7 +15,7 @@
 //                that is the only way in; the paper leaves set-up out of the slope.
 // Splitting:     curves below a bundle share one variable while the loss is bounded by theta (gradient/node_sums.h). The variable's
 //                set-up is charged with the least knee of its curves, never too low. One whose jump does not fit any more
-//                is split into its children.
+//                is split into its children; a single curve jumps as far as the budget allows.
 // Culling:       curves of less projected area than cull-px are not drawn.
 // End:           curves left below their first primitive are dropped for others; money that is still left (a jump that did not
 //                fit, rounding) goes to the curve that gains most from it.
@@ -42,7 +42,7 @@ namespace {
 struct MixedGradientParameters {
   int direction = 0;
   double barrier = 1e-3;
-  double slack = 0.1;
+  double slack = 0.25;
   std::int64_t rounds = 200;
   bool split = true;
   int split_bound = 0;
@@ -79,6 +79,9 @@ const ParameterTable<MixedGradientParameters> kParameters{{
 
 // Once this share of the budget is left, continuous steps have ended and single curves take the rest.
 constexpr double kSpent = 1e-6;
+
+// A jump is shortened to this share of what is affordable, so that rounding does not put it over.
+constexpr double kAlmost = 1 - 1e-9;
 
 class MixedGradientPolicy : public Policy {
  public:
@@ -171,7 +174,7 @@ class MixedGradientPolicy : public Policy {
                                        .first_x = sum.first_x,
                                        .x = x});
     next_[item] = static_cast<int>(v);
-    if (ascent_[v].jump_to > 0 && !(ascent_[v].x < ascent_[v].cap)) queue_jump(v);
+    if (ascent_[v].jump_to > 0) queue_jump(v, ascent_[v].cap);
   }
 
   // --- increments ---
@@ -183,10 +186,12 @@ class MixedGradientPolicy : public Policy {
     heap_.set(item, increment.slope);
   }
 
-  void queue_jump(std::size_t v) {
+  // A jump competes from the start, with its slope from `from`. Taken before smooth steps have brought the variable
+  // there, it gains no less for its cost.
+  void queue_jump(std::size_t v, double from) {
     const CurveVariable& variable = ascent_[v];
-    const double gain = benefit(variable, variable.jump_to) - benefit(variable, variable.x);
-    heap_.set(variable.item, slope_of(gain, jump_cost_s(variable)));
+    const double gain = benefit(variable, variable.jump_to) - benefit(variable, from);
+    heap_.set(variable.item, slope_of(gain, cost_s(variable, variable.jump_to) - cost_s(variable, from)));
   }
 
   static double jump_cost_s(const CurveVariable& variable) {
@@ -205,7 +210,11 @@ class MixedGradientPolicy : public Policy {
       } else {
         if (fits(jump_cost_s(ascent_[static_cast<std::size_t>(next_[item])]), left_s())) return;
         heap_.erase(item);
-        split(item);
+        if (workload_->kind[item] == ItemKind::bundle) {
+          split(item);
+        } else {
+          shorten_jump(static_cast<std::size_t>(next_[item]));
+        }
       }
       ++selection_->operations;
     }
@@ -213,7 +222,6 @@ class MixedGradientPolicy : public Policy {
 
   // Replaces the variable of a bundle by one for each child, at the same x.
   void split(std::size_t item) {
-    if (workload_->kind[item] != ItemKind::bundle) return;
     CurveVariable& variable = ascent_[static_cast<std::size_t>(next_[item])];
     const double x = variable.x;
     aimed_ = false;
@@ -221,6 +229,15 @@ class MixedGradientPolicy : public Policy {
     for (std::size_t child = item + 1; child < end(item); child = end(child)) {
       if (sums_[child].curves > 0) add_variable(child, x);
     }
+  }
+
+  // A jump as far as the money goes, unless that is hardly shorter: rounding must not bring it back for ever.
+  void shorten_jump(std::size_t v) {
+    CurveVariable& variable = ascent_[v];
+    const double to = affordable(variable, cost_s(variable, variable.x) + left_s()) * kAlmost;
+    if (!(to > variable.cap && to < variable.jump_to * kAlmost)) return;
+    variable.jump_to = to;
+    queue_jump(v, variable.x);
   }
 
   void take_increment() {
@@ -311,7 +328,6 @@ class MixedGradientPolicy : public Policy {
     aimed_ = false;
     const CurveAscent::Step step = ascent_.step(slope, left_s());
     used_s_.add(step.cost_s);
-    for (const std::uint32_t v : ascent_.at_jump()) queue_jump(v);
     return step.moved;
   }
 

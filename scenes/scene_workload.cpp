@@ -226,8 +226,8 @@ class SceneWorkload final : public WorkloadSource {
     workload.facts_begin.pop_back();
     workload.level_begin.pop_back();
     workload.subtree_end.pop_back();
-    for (auto* column : {&workload.depth_m, &workload.distance_m, &workload.view_angle_rad, &workload.area_m2,
-                         &workload.diagonal_m}) {
+    for (auto* column :
+         {&workload.depth_m, &workload.distance_m, &workload.view_angle_rad, &workload.area_m2, &workload.diagonal_m}) {
       if (!column->empty()) column->pop_back();
     }
   }

@@ -9,15 +9,18 @@
 #include "sim/words.h"
 
 // The parser's assertions become exceptions, in all builds: input must not abort the program, and with NDEBUG the library
-// would have the compiler *assume* them. One of them is wrong in version 3.3: a table header that begins with a character
-// no key begins with, "[=]". It is passed over; a few lines on the parser itself refuses that character, with its place.
+// would have the compiler *assume* them. Two of them are wrong in version 3.3: a table header may begin with a character
+// that begins no key, "[=]", and an item of a list with one that ends a value, "[}". They are passed over; a few lines
+// on the parser itself refuses those characters, with their place.
 namespace framesim::detail {
 struct TomlAssertion {
   const char* condition;
 };
-inline void fail_toml_assertion(const char* condition) {
-  if (std::string_view(condition) == "is_bare_key_character(*cp) || is_string_delimiter(*cp)") return;
-  throw TomlAssertion{condition};
+inline void fail_toml_assertion(const char* text) {
+  const std::string_view condition = text;
+  if (condition == "is_bare_key_character(*cp) || is_string_delimiter(*cp)") return;
+  if (condition == "!is_value_terminator(*cp)") return;
+  throw TomlAssertion{text};
 }
 }  // namespace framesim::detail
 #undef NDEBUG

@@ -24,7 +24,6 @@ void CurveAscent::reset(Direction direction, double barrier) {
   barrier_ = barrier;
   variables_.clear();
   active_.clear();
-  at_jump_.clear();
   evaluations_ = 0;
 }
 
@@ -89,7 +88,6 @@ CurveAscent::Point CurveAscent::at(double t) {
 }
 
 CurveAscent::Step CurveAscent::step(double slope, double most_s) {
-  at_jump_.clear();
   if (active_.empty() || !(most_s > 0)) return {};
   double t = 0;
   for (const Active& v : active_) t = std::max(t, v.t_end);
@@ -124,7 +122,6 @@ CurveAscent::Step CurveAscent::step(double slope, double most_s) {
     const double x = place(active, t);
     step.moved = step.moved || x > v.x;
     v.x = x;
-    if (x >= v.cap && v.jump_to > 0) at_jump_.push_back(active.variable);
   }
   active_.clear();  // the direction was for the old x
   return step;

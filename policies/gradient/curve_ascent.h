@@ -34,11 +34,9 @@ class CurveAscent {
   };
   // Goes along the direction as far as benefit over cost stays >= `slope` and the step costs at most `most_s`. The path
   // is bent at each variable's cap instead of ending at the first one, so that a saturating variable costs no round.
-  // The end is found by bracketing and bisection of t on a log scale (0.1 % of t, or of the money): benefit over cost
+  // The end is found by bracketing and bisection of t on a log scale (to 1 % of t, or 0.1 % of the money): benefit over cost
   // is not monotone in t once variables saturate, so a crossing is found, not always the first.
   Step step(double slope, double most_s);
-  // Variables that arrived where they jump, in the last step, ascending.
-  const std::vector<std::uint32_t>& at_jump() const { return at_jump_; }
 
   std::int64_t evaluations() const { return evaluations_; }  // of one variable, since reset()
 
@@ -60,7 +58,6 @@ class CurveAscent {
   double barrier_ = 0;
   std::vector<CurveVariable> variables_;
   std::vector<Active> active_;
-  std::vector<std::uint32_t> at_jump_;
   std::int64_t evaluations_ = 0;
 };
 

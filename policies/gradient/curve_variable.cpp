@@ -27,6 +27,17 @@ double cost_s(const CurveVariable& v, double x) {
   return x < v.knee ? v.setup_s * (x / v.knee) + v.rest_s * x : v.setup_s + v.rest_s * x;
 }
 
+double affordable(const CurveVariable& v, double money_s) {
+  const double at_knee_s = v.knee * v.rest_s + v.setup_s;
+  double x = 1;
+  if (money_s <= at_knee_s) {
+    x = v.knee > 0 ? money_s * (v.knee / at_knee_s) : 0;
+  } else if (money_s < v.setup_s + v.rest_s) {
+    x = (money_s - v.setup_s) / v.rest_s;
+  }
+  return std::clamp(x, 0.0, 1.0);
+}
+
 double benefit(const CurveVariable& v, double x) { return v.benefit * (v.square_root ? std::sqrt(x) : x); }
 
 void settle(CurveVariable& v) {

@@ -29,6 +29,8 @@ struct CurveVariable {
 
 double cost_s(const CurveVariable& variable, double x);
 double benefit(const CurveVariable& variable, double x);
+// The x in [0,1] that costs `money_s`, 0 if that pays no first primitive.
+double affordable(const CurveVariable& variable, double money_s);
 
 // Sets cap, slope_s and jump_to for the variable's present x in [0,1].
 void settle(CurveVariable& variable);

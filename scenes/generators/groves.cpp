@@ -30,15 +30,23 @@ struct GrovesParameters {
 
 const ParameterTable<GrovesParameters>& parameters() {
   static const ParameterTable<GrovesParameters> table{{
-      {"seed", &GrovesParameters::seed, {.low = 0, .high = 9e15, .help = "seed of forest, jitter and (as in terrain) heights"}},
+      {"seed",
+       &GrovesParameters::seed,
+       {.low = 0, .high = 9e15, .help = "seed of forest, jitter and (as in terrain) heights"}},
       {"count", &GrovesParameters::count, {.low = 0, .high = 16e6, .help = "number of trees"}},
       {"group", &GrovesParameters::group, {.low = 1, .high = 1024, .help = "most trees of a group"}},
       {"grid", &GrovesParameters::grid, {.low = 1, .high = 8192, .help = "cells a side, a power of two"}},
       {"splats_per_tree", &GrovesParameters::splats_per_tree, {.low = 1, .high = 1e6, .help = "at full resolution"}},
-      {"tree_height", &GrovesParameters::tree_height, {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of a tree"}},
+      {"tree_height",
+       &GrovesParameters::tree_height,
+       {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of a tree"}},
       {"crown", &GrovesParameters::crown, {.unit = "m", .low = 0.1, .high = 1e3, .help = "radius of a tree"}},
-      {"region", &GrovesParameters::region, {.unit = "m", .low = 1, .high = 1e6, .help = "side of the region, as in terrain"}},
-      {"relief", &GrovesParameters::relief, {.unit = "m", .low = 0, .high = 1e4, .help = "highest peak, as in terrain"}},
+      {"region",
+       &GrovesParameters::region,
+       {.unit = "m", .low = 1, .high = 1e6, .help = "side of the region, as in terrain"}},
+      {"relief",
+       &GrovesParameters::relief,
+       {.unit = "m", .low = 0, .high = 1e4, .help = "highest peak, as in terrain"}},
   }};
   return table;
 }
@@ -81,7 +89,10 @@ std::vector<std::vector<std::uint32_t>> count_squares(const std::vector<std::uin
 class Builder {
  public:
   Builder(Scene& scene, const GrovesParameters& p, std::vector<TypeId> types)
-      : scene_(scene), p_(p), types_(std::move(types)), grid_(static_cast<std::size_t>(p.grid)),
+      : scene_(scene),
+        p_(p),
+        types_(std::move(types)),
+        grid_(static_cast<std::size_t>(p.grid)),
         jitter_(static_cast<std::uint64_t>(p.seed), "groves-jitter") {
     const auto seed = static_cast<std::uint64_t>(p.seed);
     const double cell = 1.0 / static_cast<double>(grid_);
@@ -170,8 +181,8 @@ class Groves final : public Generator {
       throw InputError(where, fmt::format("grid {} is not a power of two", p_.grid));
     }
     if (p_.count > p_.grid * p_.grid) {
-      throw InputError(where, fmt::format("{} trees on a grid of {} cells; one cell holds one tree", p_.count,
-                                          p_.grid * p_.grid));
+      throw InputError(
+          where, fmt::format("{} trees on a grid of {} cells; one cell holds one tree", p_.count, p_.grid * p_.grid));
     }
     if (!scene.cells.empty()) throw InputError(where, "groves and cells do not go together");
     std::vector<TypeId> types;

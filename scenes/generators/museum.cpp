@@ -35,8 +35,12 @@ const ParameterTable<MuseumParameters>& parameters() {
       {"open", &MuseumParameters::open, {.low = 0, .high = 1, .help = "share of further openings, without a map"}},
       {"tile", &MuseumParameters::tile, {.unit = "m", .low = 0.1, .high = 1e3, .help = "side of a tile"}},
       {"height", &MuseumParameters::height, {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of the rooms"}},
-      {"door_height", &MuseumParameters::door_height, {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of openings"}},
-      {"pillar", &MuseumParameters::pillar, {.unit = "m", .low = 0, .high = 1e3, .help = "wall left on each side of an opening"}},
+      {"door_height",
+       &MuseumParameters::door_height,
+       {.unit = "m", .low = 0.1, .high = 1e3, .help = "height of openings"}},
+      {"pillar",
+       &MuseumParameters::pillar,
+       {.unit = "m", .low = 0, .high = 1e3, .help = "wall left on each side of an opening"}},
       {"statues", &MuseumParameters::statues, {.low = 0, .high = 1e6, .help = "number of statues"}},
       {"samples", &MuseumParameters::samples, {.low = 0, .high = 1e6, .help = "sight lines a cell; 0: none are made"}},
   }};
@@ -69,7 +73,8 @@ FloorPlan read_map(std::string_view map, const InputLocation& where) {
     plan.columns = row.size();
     ++plan.rows;
     for (const char tile : row) {
-      if (tile != '.' && tile != '#') throw InputError(where, fmt::format("'{}' in the map; allowed are '.' and '#'", tile));
+      if (tile != '.' && tile != '#')
+        throw InputError(where, fmt::format("'{}' in the map; allowed are '.' and '#'", tile));
       plan.cell.push_back(tile == '.' ? static_cast<std::uint16_t>(plan.cells++) : kNoCell);
     }
   }
@@ -138,9 +143,11 @@ class Museum final : public Generator {
     if (2 * p_.pillar >= p_.tile) throw InputError(where, "the pillars leave no opening");
     if (p_.door_height > p_.height) throw InputError(where, "door_height is above height");
     const RandomStream random(static_cast<std::uint64_t>(p_.seed), "museum");
-    const FloorPlan plan = map_.empty() ? whole_floor(static_cast<std::size_t>(p_.columns), static_cast<std::size_t>(p_.rows))
-                                        : read_map(map_, where);
-    if (scene.cells.size() + plan.cells >= kNoCell) throw InputError(where, fmt::format("more than {} cells", kNoCell - 1));
+    const FloorPlan plan = map_.empty()
+                               ? whole_floor(static_cast<std::size_t>(p_.columns), static_cast<std::size_t>(p_.rows))
+                               : read_map(map_, where);
+    if (scene.cells.size() + plan.cells >= kNoCell)
+      throw InputError(where, fmt::format("more than {} cells", kNoCell - 1));
     const std::size_t first = scene.cells.size();
     add_cells(scene, plan);
     std::vector<Joint> joints = find_joints(plan);
@@ -224,9 +231,14 @@ std::unique_ptr<Generator> make(const Settings& given) {
 
 GeneratorEntry museum_generator() {
   std::vector<ParameterInfo> infos = parameters().describe();
-  infos.push_back(text_parameter("map", "", "rows of . and #", "floor plan: '.' floor, '#' solid, rows end at a line break or /"));
-  infos.push_back(text_parameter("types", "", "a:2,b@1.5:1", "kinds of statues with weights; @ is the height of the centre in m"));
-  return {.name = "museum", .summary = "a tile grid of rooms with statues, its openings and cell visibility", .parameters = infos, .make = make};
+  infos.push_back(
+      text_parameter("map", "", "rows of . and #", "floor plan: '.' floor, '#' solid, rows end at a line break or /"));
+  infos.push_back(
+      text_parameter("types", "", "a:2,b@1.5:1", "kinds of statues with weights; @ is the height of the centre in m"));
+  return {.name = "museum",
+          .summary = "a tile grid of rooms with statues, its openings and cell visibility",
+          .parameters = infos,
+          .make = make};
 }
 
 }  // namespace framesim

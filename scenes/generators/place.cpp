@@ -82,7 +82,8 @@ std::uint16_t find_cell(const Scene& scene, std::string_view name, const InputLo
 
 std::vector<MixEntry> parse_mix(const Scene& scene, std::string_view text, const InputLocation& where,
                                 std::string_view variant) {
-  if (text.empty()) throw InputError(where, "'types' is missing; give the kinds to place and their weights: \"oak:2,elm:1\"");
+  if (text.empty())
+    throw InputError(where, "'types' is missing; give the kinds to place and their weights: \"oak:2,elm:1\"");
   std::vector<MixEntry> mix;
   for (std::string_view kind : split(text, ',')) {
     MixEntry entry;
@@ -147,7 +148,8 @@ void place_instance(Scene& scene, TypeId type, const glm::dvec3& centre, double 
 void reserve_instances(Scene& scene, std::size_t more, const InputLocation& where) {
   const std::size_t size = scene.instances.size();
   if (more > kMostInstances || size + more > kMostInstances) {
-    throw InputError(where, fmt::format("{} instances beside {}; allowed are {} in a scene", more, size, kMostInstances));
+    throw InputError(where,
+                     fmt::format("{} instances beside {}; allowed are {} in a scene", more, size, kMostInstances));
   }
   scene.instances.centre.reserve(size + more);
   scene.instances.radius_m.reserve(size + more);

@@ -11,11 +11,7 @@ GeneratorEntry museum_generator();
 
 std::span<const GeneratorEntry> generators() {
   static const GeneratorEntry kEntries[] = {
-      scatter_generator(),
-      rows_generator(),
-      terrain_generator(),
-      groves_generator(),
-      museum_generator(),
+      scatter_generator(), rows_generator(), terrain_generator(), groves_generator(), museum_generator(),
   };
   return kEntries;
 }

@@ -35,7 +35,9 @@ const ParameterTable<ScatterParameters>& parameters() {
       {"low_z", &ScatterParameters::low_z, {.unit = "m", .low = -kFar, .high = kFar, .help = "rectangle, north"}},
       {"high_z", &ScatterParameters::high_z, {.unit = "m", .low = -kFar, .high = kFar, .help = "rectangle, south"}},
       {"ground", &ScatterParameters::ground, {.unit = "m", .low = -kFar, .high = kFar, .help = "height of the ground"}},
-      {"spacing", &ScatterParameters::spacing, {.unit = "m", .low = 0, .high = kFar, .help = "least distance between spots"}},
+      {"spacing",
+       &ScatterParameters::spacing,
+       {.unit = "m", .low = 0, .high = kFar, .help = "least distance between spots"}},
       {"jitter", &ScatterParameters::jitter, {.low = 0, .high = 1, .help = "0: a grid, 1: anywhere in its cell"}},
       {"low_scale", &ScatterParameters::low_scale, {.low = 1e-3, .high = 1e3, .help = "smallest scale"}},
       {"high_scale", &ScatterParameters::high_scale, {.low = 1e-3, .high = 1e3, .help = "largest scale"}},
@@ -129,7 +131,8 @@ GeneratorEntry scatter_generator() {
                                  "kinds with weights; + joins types at one spot, @ is the height of the centre in m"));
   infos.push_back(text_parameter("variant", "", "any text", "what follows each kind's name, after a '-': oak-mobile"));
   infos.push_back(text_parameter("cell", "", "a cell's name", "cell that the instances stand in"));
-  return {.name = "scatter", .summary = "instances on a jittered grid in a rectangle", .parameters = infos, .make = make};
+  return {
+      .name = "scatter", .summary = "instances on a jittered grid in a rectangle", .parameters = infos, .make = make};
 }
 
 }  // namespace framesim

@@ -28,7 +28,9 @@ const ParameterTable<TerrainParameters>& parameters() {
       {"side", &TerrainParameters::side, {.low = 3, .high = 8193, .help = "samples a side: patch * 2^k + 1"}},
       {"patch", &TerrainParameters::patch, {.low = 2, .high = 1024, .help = "quads a side of a patch"}},
       {"region", &TerrainParameters::region, {.unit = "m", .low = 1, .high = 1e6, .help = "side of the region"}},
-      {"relief", &TerrainParameters::relief, {.unit = "m", .low = 0, .high = 1e4, .help = "height of the highest peak"}},
+      {"relief",
+       &TerrainParameters::relief,
+       {.unit = "m", .low = 0, .high = 1e4, .help = "height of the highest peak"}},
   }};
   return table;
 }
@@ -62,7 +64,8 @@ class Builder {
       for (const auto& [dx, dz] : {std::pair{std::size_t{0}, std::size_t{0}}, {half, 0}, {0, half}, {half, half}}) {
         const std::uint32_t child = add(depth + 1, x + dx, z + dz, half);
         const glm::dvec3 offset = scene_.instances.centre[child] - centre;
-        radius_m = std::max(radius_m, std::sqrt(glm_dot(offset)) + static_cast<double>(scene_.instances.radius_m[child]));
+        radius_m =
+            std::max(radius_m, std::sqrt(glm_dot(offset)) + static_cast<double>(scene_.instances.radius_m[child]));
       }
     }
     // A rounding of the sum must not leave a child's sphere outside.

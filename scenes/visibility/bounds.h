@@ -45,7 +45,7 @@ class BoundsTree {
 
  private:
   struct Node {
-    glm::dvec3 centre{0}, extent{0};  // half sizes
+    glm::dvec3 centre{0}, extent{0};    // half sizes
     std::uint32_t first = 0, last = 0;  // its rows: rows_[first, last)
     std::uint32_t right = 0;            // second child; 0 for a leaf. The first child is the next node
   };

@@ -36,10 +36,15 @@ class SightLines {
   void follow(std::uint16_t cell, std::uint32_t line, std::vector<char>& seen) const {
     const auto& exits = portals_of_[cell];
     if (exits.empty()) return;
-    const glm::dvec3 start = point_in(scene_.cells[cell].box, cell, line);
-    const auto pick = static_cast<std::size_t>(random_.uniform(cell, line, kPortal) * static_cast<double>(exits.size()));
+    glm::dvec3 start = point_in(scene_.cells[cell].box, cell, line);
+    const auto pick =
+        static_cast<std::size_t>(random_.uniform(cell, line, kPortal) * static_cast<double>(exits.size()));
     std::uint32_t portal = exits[std::min(pick, exits.size() - 1)];
-    const glm::dvec3 direction = point_on(portal, cell, line) - start;
+    const glm::dvec3 target = point_on(portal, cell, line);
+    // Every other line is level: doors stand on floors, so far cells are seen by lines that hardly rise or fall, and
+    // those are rare among lines of any slope.
+    if (line % 2 == 0) start.y = target.y;
+    const glm::dvec3 direction = target - start;
     double t = 1;  // start + t * direction is where the line is now: on `portal`
     std::uint16_t at = cell;
     // A line meets a convex cell once: more steps than cells would be a broken floor plan.
@@ -125,7 +130,7 @@ class SampledVisibility final : public Visibility {
  public:
   explicit SampledVisibility(const Scene& scene) : scene_(scene), map_(scene) {
     cells_ = scene.cell_visibility.seen.size() == scene.cells.size() ? scene.cell_visibility
-                                                                    : sample(scene, kDefaultSamples, kDefaultSeed);
+                                                                     : sample(scene, kDefaultSamples, kDefaultSeed);
     marks_.resize(scene.instances.size());
   }
 

@@ -15,7 +15,9 @@ void add_cell(Scene& scene, const glm::dvec3& low, const glm::dvec3& high) {
 
 // A door between two cells on the wall x = at or z = at, from `low` to `high` along it.
 void add_door(Scene& scene, std::uint16_t from, std::uint16_t to, int axis, double at, double low, double high) {
-  const auto corner = [&](double along, double y) { return axis == 0 ? glm::dvec3(at, y, along) : glm::dvec3(along, y, at); };
+  const auto corner = [&](double along, double y) {
+    return axis == 0 ? glm::dvec3(at, y, along) : glm::dvec3(along, y, at);
+  };
   scene.portals.push_back({from, to, {corner(low, 0), corner(high, 0), corner(high, 2), corner(low, 2)}});
 }
 

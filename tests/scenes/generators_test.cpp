@@ -32,7 +32,8 @@ void run(Scene& scene, const std::string& name, const std::vector<std::pair<std:
   find_entry<GeneratorEntry>("generator", generators(), spec).make(spec.settings)->generate(scene, spec.where);
 }
 
-std::string refusal(Scene scene, const std::string& name, const std::vector<std::pair<std::string, std::string>>& settings) {
+std::string refusal(Scene scene, const std::string& name,
+                    const std::vector<std::pair<std::string, std::string>>& settings) {
   try {
     run(scene, name, settings);
   } catch (const InputError& error) {
@@ -56,7 +57,8 @@ void check_columns(const Scene& scene) {
     REQUIRE(rows.subtree_end[row] > row);
     for (std::uint32_t child = row + 1; child < rows.subtree_end[row]; child = rows.subtree_end[child]) {
       REQUIRE(rows.subtree_end[child] <= rows.subtree_end[row]);
-      const double reach = glm::length(rows.centre[child] - rows.centre[row]) + static_cast<double>(rows.radius_m[child]);
+      const double reach =
+          glm::length(rows.centre[child] - rows.centre[row]) + static_cast<double>(rows.radius_m[child]);
       REQUIRE(reach <= static_cast<double>(rows.radius_m[row]));
     }
   }
@@ -98,8 +100,16 @@ TEST_CASE("scatter keeps the spacing and the rectangle, for any seed") {
   for (int seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Scene scene = scene_with({"a"});
-    run(scene, "scatter", {{"types", "a@0"}, {"count", "150"}, {"seed", std::to_string(seed)}, {"spacing", "3"},
-                           {"low_x", "-40"}, {"high_x", "20"}, {"low_z", "0"}, {"high_z", "60"}, {"ground", "2"}});
+    run(scene, "scatter",
+        {{"types", "a@0"},
+         {"count", "150"},
+         {"seed", std::to_string(seed)},
+         {"spacing", "3"},
+         {"low_x", "-40"},
+         {"high_x", "20"},
+         {"low_z", "0"},
+         {"high_z", "60"},
+         {"ground", "2"}});
     const auto& at = scene.instances.centre;
     REQUIRE(at.size() == 150);
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -137,10 +147,19 @@ TEST_CASE("scatter refuses what it cannot do, at its table") {
 
 TEST_CASE("rows stand where they are told, rising") {
   Scene scene = scene_with({"seat"});
-  run(scene, "rows", {{"type", "seat"}, {"columns", "3"}, {"rows", "2"}, {"x", "1"}, {"y", "0.5"}, {"z", "-4"}, {"step_x", "0.5"},
-                      {"step_z", "-1"}, {"rise", "0.25"}});
+  run(scene, "rows",
+      {{"type", "seat"},
+       {"columns", "3"},
+       {"rows", "2"},
+       {"x", "1"},
+       {"y", "0.5"},
+       {"z", "-4"},
+       {"step_x", "0.5"},
+       {"step_z", "-1"},
+       {"rise", "0.25"}});
   check_columns(scene);
-  const std::vector<glm::dvec3> expected = {{1, 0.5, -4}, {1.5, 0.5, -4}, {2, 0.5, -4}, {1, 0.75, -5}, {1.5, 0.75, -5}, {2, 0.75, -5}};
+  const std::vector<glm::dvec3> expected = {{1, 0.5, -4},  {1.5, 0.5, -4},  {2, 0.5, -4},
+                                            {1, 0.75, -5}, {1.5, 0.75, -5}, {2, 0.75, -5}};
   CHECK(scene.instances.centre == expected);
 }
 
@@ -175,7 +194,8 @@ TEST_CASE("groves hold exactly the trees asked for, in groups of at most the siz
     for (const int group : {1, 7, 64}) {
       CAPTURE(count, group);
       Scene scene = scene_with({});
-      run(scene, "groves", {{"count", std::to_string(count)}, {"grid", "128"}, {"group", std::to_string(group)}, {"region", "6000"}});
+      run(scene, "groves",
+          {{"count", std::to_string(count)}, {"grid", "128"}, {"group", std::to_string(group)}, {"region", "6000"}});
       check_columns(scene);
       double trees = 0, most = 0;
       for (std::size_t row = 0; row < scene.instances.size(); ++row) {
@@ -210,11 +230,12 @@ TEST_CASE("instances beside a tree are roots of their own") {
 
 TEST_CASE("museum from a map: cells, openings and statues") {
   Scene scene = scene_with({"statue"});
-  run(scene, "museum", {{"map", "..#\n#..\n"}, {"types", "statue@1"}, {"statues", "16"}, {"tile", "4"}, {"samples", "100"}});
+  run(scene, "museum",
+      {{"map", "..#\n#..\n"}, {"types", "statue@1"}, {"statues", "16"}, {"tile", "4"}, {"samples", "100"}});
   check_columns(scene);
   REQUIRE(scene.cells.size() == 4);  // tiles (0,0) (1,0) (1,1) (2,1)
   CHECK(scene.cells[2].name == "tile-1-1");
-  CHECK(scene.portals.size() == 3);  // (0,0)-(1,0), (1,0)-(1,1), (1,1)-(2,1)
+  CHECK(scene.portals.size() == 3);     // (0,0)-(1,0), (1,0)-(1,1), (1,1)-(2,1)
   CHECK(scene.instances.size() == 16);  // every place is taken: four a tile
   for (std::size_t row = 0; row < 16; ++row) {
     const Box& box = scene.cells[scene.instances.cell[row]].box;
@@ -236,7 +257,13 @@ TEST_CASE("museum without a map: every tile can be reached, for any seed and sha
     for (const char* open : {"0", "0.5", "1"}) {
       CAPTURE(seed, open);
       Scene scene = scene_with({});
-      run(scene, "museum", {{"columns", "6"}, {"rows", "5"}, {"open", open}, {"seed", std::to_string(seed)}, {"statues", "0"}, {"samples", "0"}});
+      run(scene, "museum",
+          {{"columns", "6"},
+           {"rows", "5"},
+           {"open", open},
+           {"seed", std::to_string(seed)},
+           {"statues", "0"},
+           {"samples", "0"}});
       CHECK(scene.cell_visibility.seen.empty());
       REQUIRE(scene.cells.size() == 30);
       if (open == std::string("0")) CHECK(scene.portals.size() == 29);  // a spanning tree

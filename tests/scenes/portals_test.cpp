@@ -24,7 +24,7 @@ struct Door {
   double at;  // where along the wall it begins, metres from the wall's low end
 };
 constexpr double kRoom = 4, kHeight = 3, kDoor = 1, kDoorHeight = 2;
-const Door kDoors[] = {{0, 1, 0.5}, {1, 2, 1.5}, {0, 4, 2}, {2, 6, 1}, {3, 7, 1}, {4, 5, 0.5},
+const Door kDoors[] = {{0, 1, 0.5}, {1, 2, 1.5}, {0, 4, 2},    {2, 6, 1}, {3, 7, 1},  {4, 5, 0.5},
                        {6, 7, 2},   {5, 9, 1},   {6, 10, 1.5}, {8, 9, 1}, {10, 11, 1}};
 
 glm::dvec3 room_corner(int room) { return {kRoom * (room % 4), 0, kRoom * (room / 4)}; }
@@ -34,13 +34,15 @@ Scene floor_plan() {
   scene.visibility = VisibilityMethod::portals;
   scene.screen = {.width = 800, .height = 600, .fov_y_rad = std::numbers::pi / 3, .near_m = 0.05, .far_m = 100};
   for (int room = 0; room < 12; ++room) {
-    scene.cells.push_back({std::to_string(room), {room_corner(room), room_corner(room) + glm::dvec3(kRoom, kHeight, kRoom)}});
+    scene.cells.push_back(
+        {std::to_string(room), {room_corner(room), room_corner(room) + glm::dvec3(kRoom, kHeight, kRoom)}});
   }
   for (const Door& door : kDoors) {
     const bool across = door.to == door.from + 1;  // the wall is at constant x
     const glm::dvec3 along = across ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0), up(0, kDoorHeight, 0);
     const glm::dvec3 a = room_corner(door.to) + along * door.at, b = a + along * kDoor;
-    scene.portals.push_back({static_cast<std::uint16_t>(door.from), static_cast<std::uint16_t>(door.to), {a, b, b + up, a + up}});
+    scene.portals.push_back(
+        {static_cast<std::uint16_t>(door.from), static_cast<std::uint16_t>(door.to), {a, b, b + up, a + up}});
   }
   return scene;
 }
@@ -49,7 +51,8 @@ Scene floor_plan() {
 void furnish(Scene& scene, const RandomStream& random, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto room = static_cast<int>(random.uniform(0.0, 12.0, 0, i, 0));
-    const glm::dvec3 share(random.uniform(0.05, 0.95, 0, i, 1), random.uniform(0.05, 0.95, 0, i, 2), random.uniform(0.05, 0.95, 0, i, 3));
+    const glm::dvec3 share(random.uniform(0.05, 0.95, 0, i, 1), random.uniform(0.05, 0.95, 0, i, 2),
+                           random.uniform(0.05, 0.95, 0, i, 3));
     scene.instances.centre.push_back(room_corner(room) + share * glm::dvec3(kRoom, kHeight, kRoom));
     scene.instances.radius_m.push_back(0.1f);
     scene.instances.area_m2.push_back(1);
@@ -61,7 +64,8 @@ void furnish(Scene& scene, const RandomStream& random, std::uint32_t count) {
 
 Pose random_pose(const RandomStream& random, std::uint64_t frame) {
   Pose pose;
-  pose.eye = {random.uniform(0.0, 16.0, frame, 0, 0), random.uniform(0.2, 2.8, frame, 0, 1), random.uniform(0.0, 12.0, frame, 0, 2)};
+  pose.eye = {random.uniform(0.0, 16.0, frame, 0, 0), random.uniform(0.2, 2.8, frame, 0, 1),
+              random.uniform(0.0, 12.0, frame, 0, 2)};
   const double heading = random.uniform(0.0, 2 * std::numbers::pi, frame, 0, 3);
   pose.forward = {std::sin(heading), 0, std::cos(heading)};
   return pose;
@@ -121,19 +125,22 @@ TEST_CASE("portals never miss an instance that a sight line reaches") {
       for (std::uint32_t row = 0; row < scene.instances.size(); ++row) {
         // A few points of its sphere; the sphere lies within its room.
         for (std::uint32_t k = 0; k < 4; ++k) {
-          const glm::dvec3 way(random.uniform(-1.0, 1.0, frame, row, 3 * k + 10), random.uniform(-1.0, 1.0, frame, row, 3 * k + 11), random.uniform(-1.0, 1.0, frame, row, 3 * k + 12));
+          const glm::dvec3 way(random.uniform(-1.0, 1.0, frame, row, 3 * k + 10),
+                               random.uniform(-1.0, 1.0, frame, row, 3 * k + 11),
+                               random.uniform(-1.0, 1.0, frame, row, 3 * k + 12));
           const glm::dvec3 point = scene.instances.centre[row] + way * (0.099 / std::sqrt(3.0));
           if (!in_view(pose, scene.screen, point) || !clear_line(pose.eye, point)) continue;
           ++reached;
-          beyond += !(glm::clamp(pose.eye, scene.cells[scene.instances.cell[row]].box.low, scene.cells[scene.instances.cell[row]].box.high) == pose.eye);
+          beyond += !(glm::clamp(pose.eye, scene.cells[scene.instances.cell[row]].box.low,
+                                 scene.cells[scene.instances.cell[row]].box.high) == pose.eye);
           CAPTURE(row, point.x, point.y, point.z, pose.eye.x, pose.eye.y, pose.eye.z);
           REQUIRE(std::binary_search(visible.begin(), visible.end(), row));
         }
       }
     }
   }
-  CHECK(reached > 10'000);  // the test looked at something,
-  CHECK(beyond > 1'000);    // also through doors,
+  CHECK(reached > 10'000);       // the test looked at something,
+  CHECK(beyond > 1'000);         // also through doors,
   CHECK(kept < in_frustum / 2);  // and the doors narrow the view
 }
 

@@ -43,7 +43,8 @@ ObjectType continuous_type(double polygons, double draws) {
   return type;
 }
 
-void add_row(Scene& scene, std::size_t type, const glm::dvec3& centre, double radius, ItemKind kind = ItemKind::levels) {
+void add_row(Scene& scene, std::size_t type, const glm::dvec3& centre, double radius,
+             ItemKind kind = ItemKind::levels) {
   scene.view_levels.resize(scene.types.size());
   scene.instances.centre.push_back(centre);
   scene.instances.radius_m.push_back(static_cast<float>(radius));
@@ -65,8 +66,8 @@ std::vector<std::uint32_t> ids(const Workload& workload) {
 TEST_CASE("workload columns of one instance, by hand") {
   Scene scene = empty_scene();
   scene.types = {discrete_type({10, 100})};
-  add_row(scene, 0, {6, 0, -8}, 2);    // 10 m away, depth 8
-  add_row(scene, 0, {0, 0, 50}, 1);    // behind
+  add_row(scene, 0, {6, 0, -8}, 2);  // 10 m away, depth 8
+  add_row(scene, 0, {0, 0, 50}, 1);  // behind
   const auto source = make_workload_source(scene);
   Workload w;
   const VisibilityCounts counts = source->fill(0, {}, w);
@@ -153,7 +154,8 @@ TEST_CASE("trunk levels by view: lines below three halves of the width") {
   type.radius_m = 2;
   type.levels[0].vertices = 90;
   scene.types = {type};
-  scene.view_levels = {{.part = ViewPart::trunk, .smallest_px = 1, .largest_px = 4, .cylinder_diameter_m = {0.05, 0.1, 0.2}}};
+  scene.view_levels = {
+      {.part = ViewPart::trunk, .smallest_px = 1, .largest_px = 4, .cylinder_diameter_m = {0.05, 0.1, 0.2}}};
   add_row(scene, 0, {0, 0, -36}, 2);  // 10 pixels a metre: projected diameters 0.5, 1, 2 pixels
   const auto source = make_workload_source(scene);
   Workload w;
@@ -182,8 +184,14 @@ TEST_CASE("leaves levels by view: points, then points and triangles, then triang
   type.radius_m = 1;
   scene.types = {type};
   // Two groups of 10 leaves; a group's area is 10 * 0.08 / 2 = 0.4 m^2, at 10 pixels a metre 40 pixels.
-  scene.view_levels = {{.part = ViewPart::leaves, .smallest_px = 1, .largest_px = 7, .cylinder_diameter_m = {}, .groups = 2,
-                        .leaves_per_group = 10, .leaf_area_m2 = 0.08, .facing_factor = 2}};
+  scene.view_levels = {{.part = ViewPart::leaves,
+                        .smallest_px = 1,
+                        .largest_px = 7,
+                        .cylinder_diameter_m = {},
+                        .groups = 2,
+                        .leaves_per_group = 10,
+                        .leaf_area_m2 = 0.08,
+                        .facing_factor = 2}};
   add_row(scene, 0, {0, 0, -36}, 1);
   const auto source = make_workload_source(scene);
   Workload w;
@@ -324,7 +332,8 @@ Scene landscape() {
   scene.smallest_px = 20;
   scene.camera.poses.clear();
   for (int i = 0; i < 40; ++i) {
-    scene.camera.poses.push_back(make_pose({-5000.0 + 250 * i, 600, 3000.0 - 100 * i}, {std::cos(0.3 * i), -0.3, std::sin(0.3 * i)}));
+    scene.camera.poses.push_back(
+        make_pose({-5000.0 + 250 * i, 600, 3000.0 - 100 * i}, {std::cos(0.3 * i), -0.3, std::sin(0.3 * i)}));
   }
   return scene;
 }

@@ -12,7 +12,9 @@ using namespace framesim;
 namespace {
 
 // 90 degrees both ways, 720 pixels high: focal length 360 pixels.
-Screen square_screen() { return {.width = 720, .height = 720, .fov_y_rad = std::numbers::pi / 2, .near_m = 1, .far_m = 100}; }
+Screen square_screen() {
+  return {.width = 720, .height = 720, .fov_y_rad = std::numbers::pi / 2, .near_m = 1, .far_m = 100};
+}
 
 void add_sphere(Scene& scene, const glm::dvec3& centre, double radius_m) {
   scene.instances.centre.push_back(centre);
@@ -96,13 +98,15 @@ TEST_CASE("projected area on the near plane and of a point are finite") {
 TEST_CASE("frustum planes have unit normals and the documented order") {
   const Frustum frustum = make_frustum({}, square_screen());  // at the origin, looking to -z
   for (const Plane& plane : frustum.planes) CHECK(glm::length(plane.normal) == Approx(1).epsilon(1e-15));
-  const auto distance = [&](std::size_t i, const glm::dvec3& p) { return glm::dot(frustum.planes[i].normal, p) + frustum.planes[i].offset; };
+  const auto distance = [&](std::size_t i, const glm::dvec3& p) {
+    return glm::dot(frustum.planes[i].normal, p) + frustum.planes[i].offset;
+  };
   // Half angle 45 degrees: at depth 10 the walls are 10 m off the axis, and 10/sqrt(2) from the point on it.
   for (std::size_t i = 0; i < 4; ++i) CHECK(distance(i, {0, 0, -10}) == Approx(10 / std::sqrt(2.0)));
-  CHECK(distance(0, {-11, 0, -10}) < 0);  // left
-  CHECK(distance(1, {11, 0, -10}) < 0);   // right
-  CHECK(distance(2, {0, -11, -10}) < 0);  // bottom
-  CHECK(distance(3, {0, 11, -10}) < 0);   // top
+  CHECK(distance(0, {-11, 0, -10}) < 0);          // left
+  CHECK(distance(1, {11, 0, -10}) < 0);           // right
+  CHECK(distance(2, {0, -11, -10}) < 0);          // bottom
+  CHECK(distance(3, {0, 11, -10}) < 0);           // top
   CHECK(distance(4, {0, 0, -10}) == Approx(9));   // near at 1 m
   CHECK(distance(5, {0, 0, -10}) == Approx(90));  // far at 100 m
 }
@@ -176,7 +180,8 @@ TEST_CASE("the scene's own tree finds what brute force finds, inner nodes includ
     const RandomStream random(seed, "tree-test");
     Scene scene;
     scene.screen = square_screen();
-    for (int root = 0; root < 3; ++root) grow(scene, random, random_point(random, 1, scene.instances.size(), 40), 60, 7);
+    for (int root = 0; root < 3; ++root)
+      grow(scene, random, random_point(random, 1, scene.instances.size(), 40), 60, 7);
     const auto visibility = make_visibility(scene);
     for (std::uint64_t frame = 100; frame < 110; ++frame) {
       CAPTURE(frame);
