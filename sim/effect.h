@@ -1,9 +1,10 @@
 // PORT: an effect: something a scene or machine may call for and that costs nothing where it is not called for.
 // To add one: copy effects/vsync.cpp, add a line to effects/registry.cpp and a test.
 //
-// An effect names the hooks it uses. The run composes its active effects once, at load, into one short list a hook;
-// empty lists cost nothing and the engine has no branch for any of them. An effect that cannot change the result of this
-// run says so (`inert`), and is then left out; leaving it out changes no bit.
+// An effect names the hooks it uses, and is called at those and nowhere else. A run composes its active effects once, at
+// load, into one short list a hook (`ActiveEffects`); an empty list costs one comparison a frame, and the engine has no
+// branch for any of them. An effect that cannot change the result of this run says why (`inert`) and is then left out;
+// leaving it out changes no bit. Effects apply in the order of the registry, whatever the order of declaration.
 #pragma once
 
 #include <cstdint>
@@ -11,38 +12,94 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "sim/estimator.h"
+#include "sim/frame_record.h"
 #include "sim/machine.h"
+#include "sim/policy.h"
 #include "sim/random_stream.h"
 #include "sim/registry.h"
+#include "sim/stage_graph.h"
 
 namespace framesim {
 
-enum class Hook : std::uint8_t { frame = 1, commands = 2, present = 4 };
+// Where an effect acts, in the order of a frame.
+enum class Hook : std::uint16_t {
+  machine = 1,     // once, at load: the machine is another one
+  frame = 2,       // before a frame: its logic time, its vertical blanks
+  workload = 4,    // after the benefit model: what things are worth (perception)
+  commands = 8,    // after the machine has priced the drawn commands: whole columns, or further commands
+  outcome = 16,    // what policy and estimator are told of a frame
+  after = 32,      // after the frame: the effect's own state (heat)
+};
 constexpr Hook operator|(Hook a, Hook b) { return static_cast<Hook>(static_cast<int>(a) | static_cast<int>(b)); }
 constexpr bool has(Hook set, Hook hook) { return (static_cast<int>(set) & static_cast<int>(hook)) != 0; }
+
+// What is known of the run when an effect is asked whether it is inert.
+struct EffectContext {
+  const MachineProfile& machine;  // with the effects of Hook::machine before this one applied
+  const SceneFacts& scene;
+  const LogicLoad& logic;
+};
 
 // What effects may change of one frame before it runs.
 struct FrameSettings {
   std::int64_t frame = 0;
-  Picoseconds logic{0};         // Hook::frame
-  Picoseconds vsync_period{0};  // Hook::present; 0 = shown at once
+  Picoseconds logic{0};
+  Picoseconds vsync_period{0};  // 0 = shown at once
+};
+
+// The frame as it is drawn. `commands` rows name their items.
+struct DrawnFrame {
+  std::int64_t frame = 0;
+  const Workload& workload;
+  const Selection& selection;
+  const Machine& machine;
 };
 
 class Effect {
  public:
   virtual ~Effect() = default;
   virtual Hook hooks() const = 0;
-  // Why this effect cannot change any frame of a run on this machine, or nothing if it can.
-  virtual std::optional<std::string> inert(const MachineProfile& machine) const = 0;
-  // Hook::frame and Hook::present: before the frame starts.
-  virtual void on_frame(FrameSettings&) const {}
-  // Hook::commands: on whole columns, after the machine has filled them.
-  virtual void on_commands(std::int64_t /*frame*/, CommandColumns&) const {}
+  // Why this effect cannot change any frame of the run, or nothing if it can.
+  virtual std::optional<std::string> inert(const EffectContext& context) const = 0;
+  // Workload columns that the effect reads beside those of the policy.
+  virtual Columns columns() const { return Columns::none; }
+  // Once before the first frame; forgets all frames seen.
+  virtual void prepare(const EffectContext&) {}
+
+  virtual void on_machine(MachineProfile&) const {}
+  virtual void on_frame(FrameSettings&) {}
+  // May change `benefit` and nothing else.
+  virtual void on_workload(std::int64_t /*frame*/, Workload&) {}
+  // May change durations and append rows; row 0 stays the clear.
+  virtual void on_commands(const DrawnFrame&, CommandColumns&) {}
+  // May change both in place. False: nothing is told after this frame.
+  virtual bool on_outcome(FrameOutcome&, EstimateOutcome&) { return true; }
+  virtual void after_frame(const FrameRecord&) {}
 };
 
 // Registered in effects/registry.cpp. `seed` is the run's master seed; each effect derives its own stream from it.
 using EffectEntry = RegistryEntry<Effect, std::uint64_t>;
 std::span<const EffectEntry> effects();
+
+// The active effects of a run, composed once: a list a hook.
+class ActiveEffects {
+ public:
+  ActiveEffects() = default;
+  // In the order in which they apply; they must outlive this.
+  explicit ActiveEffects(const std::vector<Effect*>& effects);
+
+  void prepare(const EffectContext& context) const;
+  // Union of what the effects read.
+  Columns columns() const { return columns_; }
+
+  std::vector<Effect*> frame, workload, commands, outcome, after;
+
+ private:
+  std::vector<Effect*> all_;
+  Columns columns_ = Columns::none;
+};
 
 }  // namespace framesim

@@ -40,7 +40,7 @@ double fineness(const Workload& workload, const Selection& selection, std::size_
 }  // namespace
 
 Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& config)
-    : parts_(parts), config_(config), traits_(parts.policy.traits()), stages_(parts.logic.tasks) {
+    : parts_(parts), config_(config), traits_(parts.policy.traits()), stages_(parts.logic.tasks), effects_(parts.effects) {
   FRAMESIM_CHECK(std::isfinite(config_.target_s) && config_.target_s > 0, fmt::format("target {} s", config_.target_s));
   const SceneFacts& scene = parts_.scene.scene();
   engine_ = make_engine(parts_.machine.profile(), config_.engine);
@@ -52,6 +52,8 @@ Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& con
                          .complexity_s = complexity_s_,
                          .instances = scene.instances,
                          .screen_px = scene.screen_px});
+  traits_.request.columns = traits_.request.columns | effects_.columns();
+  effects_.prepare({.machine = parts_.machine.profile(), .scene = scene, .logic = parts_.logic});
   last_level_.assign(scene.instances, kNotDrawn);
   last_seen_.assign(scene.instances, -1);
 }
@@ -79,6 +81,7 @@ void Simulation::see() {
   const VisibilityCounts counts = parts_.scene.fill(record_.frame, traits_.request, workload_);
   parts_.estimator.price(workload_);
   score(workload_);
+  for (Effect* effect : effects_.workload) effect->on_workload(record_.frame, workload_);
   record_.visibility_tests = counts.tests;
   record_.visible = counts.visible;
   record_.visibility_ps =
@@ -90,9 +93,7 @@ void Simulation::run_logic() {
   settings_ = {.frame = record_.frame};
   settings_.logic =
       ceil_picoseconds(logic.base_s + logic.per_item_s * static_cast<double>(record_.visible)) + stages_.task_time();
-  for (const Effect* effect : parts_.effects) {
-    if (has(effect->hooks(), Hook::frame | Hook::present)) effect->on_frame(settings_);
-  }
+  for (Effect* effect : effects_.frame) effect->on_frame(settings_);
   record_.logic_ps = settings_.logic.count();
 }
 
@@ -128,9 +129,9 @@ void Simulation::draw() {
   const MachineProfile& machine = parts_.machine.profile();
   commands_.clear();
   parts_.machine.command(workload_, selection_, commands_);
-  for (const Effect* effect : parts_.effects) {
-    if (has(effect->hooks(), Hook::commands)) effect->on_commands(record_.frame, commands_);
-  }
+  const DrawnFrame drawn{
+      .frame = record_.frame, .workload = workload_, .selection = selection_, .machine = parts_.machine};
+  for (Effect* effect : effects_.commands) effect->on_commands(drawn, commands_);
   const Picoseconds cpu_before = settings_.logic + Picoseconds(record_.visibility_ps) + Picoseconds(record_.decide_ps) +
                                  ceil_picoseconds(machine.frame_setup_s);
   const FrameTimes times = engine_->run({.cpu_before = cpu_before,
@@ -199,21 +200,28 @@ void Simulation::record_switches() {
   }
 }
 
-// The only two messages that flow back.
+// The only two messages that flow back; effects keep their own state.
 void Simulation::tell() {
   const double draw_time_s = to_seconds(Picoseconds(record_.draw_time_ps));
-  parts_.policy.observe({.frame = record_.frame,
-                         .target_s = config_.target_s,
-                         .budget_s = record_.budget_s,
-                         .frame_time_s = to_seconds(Picoseconds(record_.frame_time_ps)),
-                         .draw_time_s = draw_time_s,
-                         .planned_cost_s = record_.planned_cost_s,
-                         .workload = workload_,
-                         .selection = selection_});
-  parts_.estimator.correct({.estimated_draw_s = record_.planned_cost_s,
-                            .actual_draw_s = draw_time_s,
-                            .actual_logic_s = to_seconds(Picoseconds(record_.logic_ps)),
-                            .visible = record_.visible});
+  FrameOutcome outcome{.frame = record_.frame,
+                       .target_s = config_.target_s,
+                       .budget_s = record_.budget_s,
+                       .frame_time_s = to_seconds(Picoseconds(record_.frame_time_ps)),
+                       .draw_time_s = draw_time_s,
+                       .planned_cost_s = record_.planned_cost_s,
+                       .workload = workload_,
+                       .selection = selection_};
+  EstimateOutcome estimate{.estimated_draw_s = record_.planned_cost_s,
+                           .actual_draw_s = draw_time_s,
+                           .actual_logic_s = to_seconds(Picoseconds(record_.logic_ps)),
+                           .visible = record_.visible};
+  bool told = true;
+  for (Effect* effect : effects_.outcome) told = effect->on_outcome(outcome, estimate) && told;
+  if (told) {
+    parts_.policy.observe(outcome);
+    parts_.estimator.correct(estimate);
+  }
+  for (Effect* effect : effects_.after) effect->after_frame(record_);
 }
 
 }  // namespace framesim

@@ -30,7 +30,7 @@ struct SimulationParts {
   Estimator& estimator;
   const Machine& machine;
   const LogicLoad& logic;
-  std::vector<const Effect*> effects;  // active ones only, in the order they apply
+  std::vector<Effect*> effects{};  // active ones only, in the order they apply; Hook::machine is in `machine` already
 };
 
 class Simulation {
@@ -64,6 +64,7 @@ class Simulation {
   SimulationConfig config_;
   PolicyTraits traits_;
   StageGraph stages_;
+  ActiveEffects effects_;
   std::unique_ptr<Engine> engine_;
   std::vector<double> complexity_s_;
   std::int64_t next_frame_ = 0;

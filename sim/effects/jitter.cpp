@@ -34,14 +34,14 @@ class Jitter : public Effect {
 
   Hook hooks() const override { return Hook::commands; }
 
-  std::optional<std::string> inert(const MachineProfile&) const override {
+  std::optional<std::string> inert(const EffectContext&) const override {
     if (sigma_ > 0) return std::nullopt;
     return "sigma is 0, so every factor is 1";
   }
 
-  void on_commands(std::int64_t frame, CommandColumns& commands) const override {
-    vary(frame, kPrimitiveLane, commands.primitive_ps);
-    vary(frame, kPixelLane, commands.pixel_ps);
+  void on_commands(const DrawnFrame& drawn, CommandColumns& commands) override {
+    vary(drawn.frame, kPrimitiveLane, commands.primitive_ps);
+    vary(drawn.frame, kPixelLane, commands.pixel_ps);
   }
 
  private:

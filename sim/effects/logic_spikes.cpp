@@ -37,12 +37,12 @@ class LogicSpikes : public Effect {
 
   Hook hooks() const override { return Hook::frame; }
 
-  std::optional<std::string> inert(const MachineProfile&) const override {
+  std::optional<std::string> inert(const EffectContext&) const override {
     if (duration_.count() > 0) return std::nullopt;
     return "a spike adds no time: duration is 0";
   }
 
-  void on_frame(FrameSettings& settings) const override {
+  void on_frame(FrameSettings& settings) override {
     if (settings.frame >= first_ && (settings.frame - first_) % every_ == 0) settings.logic += duration_;
   }
 

@@ -26,14 +26,14 @@ class Vsync : public Effect {
  public:
   explicit Vsync(const VsyncParameters& parameters) : period_(std::llround(parameters.rate * 1e12)) {}
 
-  Hook hooks() const override { return Hook::present; }
+  Hook hooks() const override { return Hook::frame; }
 
-  std::optional<std::string> inert(const MachineProfile&) const override {
+  std::optional<std::string> inert(const EffectContext&) const override {
     if (period_.count() > 0) return std::nullopt;
     return "the display does not wait: rate is off";
   }
 
-  void on_frame(FrameSettings& settings) const override { settings.vsync_period = period_; }
+  void on_frame(FrameSettings& settings) override { settings.vsync_period = period_; }
 
  private:
   Picoseconds period_;  // nearest to the wanted one: 60Hz is 16666666667 ps
