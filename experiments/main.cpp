@@ -80,11 +80,13 @@ int run_program(int argc, char** argv) {
   framesim::add_list(app, session);
   framesim::add_run(app, session);
   framesim::add_compare(app, session);
+  framesim::add_explain(app, session);
   framesim::add_check(app, session);
   app.footer(
       "Examples:\n"
       "  framesim compare\n"
       "  framesim run street --policy robin-hood --target 25ms\n"
+      "  framesim explain street --policy robin-hood\n"
       "  framesim list policies\n"
       "Exit codes: 0 done, 1 check found a difference, 2 wrong command line, 3 wrong input file, 4 internal error.");
   try {

@@ -11,15 +11,14 @@
 namespace framesim {
 namespace {
 
-constexpr std::string_view kFidelityNames[] = {"auto", "recurrence", "events", "closed-form"};
 constexpr double kMostFrames = 1e9;
 
 EngineKind read_fidelity(const std::string& text, const InputLocation& where) {
-  for (std::size_t i = 0; i < std::size(kFidelityNames); ++i) {
-    if (kFidelityNames[i] == text) return static_cast<EngineKind>(i);
+  for (std::size_t i = 0; i < std::size(kEngineKindNames); ++i) {
+    if (kEngineKindNames[i] == text) return static_cast<EngineKind>(i);
   }
   throw InputError(where,
-                   fmt::format("--fidelity: '{}' is unknown; allowed: {}", text, fmt::join(kFidelityNames, ", ")));
+                   fmt::format("--fidelity: '{}' is unknown; allowed: {}", text, fmt::join(kEngineKindNames, ", ")));
 }
 
 std::int64_t read_frames(const std::string& text, const InputLocation& where) {
@@ -127,6 +126,9 @@ void add_shared_options(CLI::App& app, SharedOptions& options) {
       ->type_name("NAME")
       ->capture_default_str();
   app.add_flag("--verify", options.verify, "Check every selection of every frame against the rules (slow)");
+  // For tests: no help text, as an empty group hides it.
+  app.add_flag("--force-inert-effects", options.force_inert, "Run effects that cannot change the result too")
+      ->group("");
 }
 
 void add_jobs_option(CLI::App& app, int& jobs) {
@@ -152,6 +154,7 @@ RunSpec read_shared(const SharedOptions& options, const InputLocation& where) {
   spec.frames = read_frames(options.frames, where);
   spec.engine.kind = read_fidelity(options.fidelity, where);
   spec.verify = options.verify;
+  spec.force_inert = options.force_inert;
   return spec;
 }
 

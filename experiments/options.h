@@ -22,6 +22,7 @@ struct SharedOptions {
   std::string fidelity = "auto";
   std::string seed = "1";
   bool verify = false;
+  bool force_inert = false;
 };
 
 void add_shared_options(CLI::App& app, SharedOptions& options);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "experiments/run_effects.h"
 #include "policies/registry.h"
+#include "scenes/machine_file.h"
 #include "scenes/registry.h"
 #include "scenes/scene_workload.h"
 #include "sim/simulation.h"
@@ -18,66 +20,52 @@ struct Parts {
   std::unique_ptr<Policy> policy;
   std::unique_ptr<Planner> planner;
   std::unique_ptr<Estimator> estimator;
-  std::vector<std::unique_ptr<Effect>> effects;  // active ones
+  std::unique_ptr<WorkloadSource> source;
+  std::vector<DeclaredEffect> effects;
   std::string planner_name;
-  std::vector<std::string> effect_names;
-  std::vector<InertEffect> inert_effects;
 };
 
 MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
   MachineProfile profile = spec.machine ? load_machine(*spec.machine) : scene.machine;
+  if (spec.machine) {
+    if (const auto missing = missing_costs(scene, profile)) throw InputError(spec.machine->where, *missing);
+  }
   if (spec.overlap) profile.overlap = *spec.overlap;
   return profile;
 }
 
-// The scene's effects, then those of the command line; one of the same name takes the earlier one's place.
-std::vector<Spec> resolve_effects(const RunSpec& spec, const Scene& scene) {
-  std::vector<Spec> declared = scene.effects;
-  for (const Spec& without : spec.no_effects) {
-    if (without.name != "all") find_entry("effect", effects(), without);
-    std::erase_if(declared, [&](const Spec& s) { return without.name == "all" || s.name == without.name; });
-  }
-  for (const Spec& added : spec.effects) {
-    const auto same =
-        std::find_if(declared.begin(), declared.end(), [&](const Spec& s) { return s.name == added.name; });
-    if (same == declared.end()) {
-      declared.push_back(added);
-    } else {
-      *same = added;
-    }
-  }
-  return declared;
-}
-
-void make_effects(const RunSpec& spec, const Scene& scene, Parts& parts) {
-  for (const Spec& declared : resolve_effects(spec, scene)) {
-    auto effect = find_entry("effect", effects(), declared).make(declared.settings, spec.seed);
-    if (const auto reason = effect->inert(parts.machine->profile())) {
-      parts.inert_effects.push_back({to_string(declared), *reason});
-      continue;
-    }
-    parts.effect_names.push_back(to_string(declared));
-    parts.effects.push_back(std::move(effect));
-  }
+// A staged overlap has no closed form, and the closed forms have no stages.
+void check_fidelity(const RunSpec& spec, const MachineProfile& machine) {
+  const bool staged = machine.overlap.kind == OverlapKind::staged;
+  if (spec.engine.kind == EngineKind::automatic || (spec.engine.kind == EngineKind::closed_form) != staged) return;
+  throw InputError(spec.policy.where,
+                   fmt::format("--fidelity {} does not go with overlap '{}'; allowed: {}",
+                               staged ? "closed-form" : "recurrence or events", to_string(machine.overlap),
+                               staged ? "auto, recurrence, events, or an --overlap serial, paper2005, max-plus-s:S"
+                                      : "auto, closed-form, or an --overlap staged, staged:N"));
 }
 
 Parts make_parts(const RunSpec& spec, const Scene& scene) {
   Parts parts;
-  parts.machine = std::make_unique<Machine>(resolve_machine(spec, scene));
+  MachineProfile machine = resolve_machine(spec, scene);
+  check_fidelity(spec, machine);
+  parts.source = make_workload_source(scene);
+  parts.effects = declare_effects(spec, scene, parts.source->scene(), machine);
+  parts.machine = std::make_unique<Machine>(std::move(machine));
   parts.policy = find_entry("policy", policies(), spec.policy).make(spec.policy.settings);
   const Spec planner =
       spec.planner ? *spec.planner : Spec{std::string(parts.policy->traits().planner), {}, spec.policy.where};
   parts.planner = find_entry("planner", planners(), planner).make(planner.settings);
   parts.planner_name = to_string(planner);
   parts.estimator = find_entry("estimator", estimators(), spec.estimator).make(spec.estimator.settings);
-  make_effects(spec, scene, parts);
-  make_engine(parts.machine->profile(), spec.engine);  // refuses what does not go together
   return parts;
 }
 
-std::vector<const Effect*> pointers(const std::vector<std::unique_ptr<Effect>>& effects) {
-  std::vector<const Effect*> list;
-  for (const auto& effect : effects) list.push_back(effect.get());
+std::vector<Effect*> running(const std::vector<DeclaredEffect>& effects) {
+  std::vector<Effect*> list;
+  for (const DeclaredEffect& declared : effects) {
+    if (declared.runs) list.push_back(declared.effect.get());
+  }
   return list;
 }
 
@@ -91,8 +79,13 @@ RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts) 
   result.overlap = to_string(parts.machine->profile().overlap);
   result.planner = parts.planner_name;
   result.estimator = to_string(spec.estimator);
-  result.effects = parts.effect_names;
-  result.inert_effects = parts.inert_effects;
+  for (const DeclaredEffect& declared : parts.effects) {
+    if (declared.runs) {
+      result.effects.push_back(to_string(declared.spec));
+    } else {
+      result.inert_effects.push_back({to_string(declared.spec), *declared.inert});
+    }
+  }
   result.target_s = spec.target_s;
   result.seed = spec.seed;
   return result;
@@ -102,6 +95,28 @@ RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts) 
 
 void check_parts(const RunSpec& spec, const Scene& scene) { make_parts(spec, scene); }
 
+Plan plan(const RunSpec& spec, const Scene& scene) {
+  const Parts parts = make_parts(spec, scene);
+  const MachineProfile& machine = parts.machine->profile();
+  Plan plan{.parts = describe(spec, scene, parts),
+            .policy = parts.policy->traits(),
+            .overlap = machine.overlap,
+            .asked = spec.engine.kind,
+            .engine = make_engine(machine, spec.engine)->kind()};
+  for (const EffectEntry& entry : effects()) {
+    Plan::EffectState state{.name = std::string(entry.name)};
+    for (const DeclaredEffect& declared : parts.effects) {
+      if (declared.spec.name != entry.name) continue;
+      state.declared = to_string(declared.spec);
+      state.inert = declared.inert;
+      state.hooks = declared.effect->hooks();
+      state.columns = declared.effect->columns();
+    }
+    plan.effects.push_back(std::move(state));
+  }
+  return plan;
+}
+
 std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
   const auto path = static_cast<std::int64_t>(scene.camera.poses.size());
   return spec.frames > 0 ? std::min(spec.frames, path) : path;
@@ -109,14 +124,13 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
 
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
   const Parts parts = make_parts(spec, scene);
-  const auto source = make_workload_source(scene);
-  Simulation simulation({.scene = *source,
+  Simulation simulation({.scene = *parts.source,
                          .policy = *parts.policy,
                          .planner = *parts.planner,
                          .estimator = *parts.estimator,
                          .machine = *parts.machine,
                          .logic = scene.logic,
-                         .effects = pointers(parts.effects)},
+                         .effects = running(parts.effects)},
                         {.target_s = spec.target_s, .engine = spec.engine, .check_selections = spec.verify});
   RunResult result = describe(spec, scene, parts);
   const std::int64_t frames = frames_to_run(spec, scene);

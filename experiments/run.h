@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/effect.h"
 #include "sim/engine.h"
 #include "sim/frame_record.h"
 #include "sim/metrics.h"
@@ -34,10 +35,11 @@ struct RunSpec {
   std::uint64_t seed = 1;
   std::int64_t frames = 0;  // at most so many; 0 = the whole camera path
   EngineOptions engine;
-  bool verify = false;  // check every selection against the rules (slow)
+  bool verify = false;       // check every selection against the rules (slow)
+  bool force_inert = false;  // run inert effects too instead of leaving them out: for tests, since it changes nothing
 };
 
-// An effect that was declared but cannot change this run, and why it was left out.
+// An effect that was declared but cannot change this run, and why.
 struct InertEffect {
   std::string name, reason;
 };
@@ -45,14 +47,31 @@ struct InertEffect {
 struct RunResult {
   // As they were resolved, in the form in which the command line takes them.
   std::string scene, title, policy, machine, machine_source, overlap, planner, estimator;
-  std::vector<std::string> effects;
-  std::vector<InertEffect> inert_effects;
+  std::vector<std::string> effects;        // those that ran, in the order in which they apply
+  std::vector<InertEffect> inert_effects;  // those that were left out
   double target_s = 0;
   std::uint64_t seed = 0;
   Summary summary;
   std::vector<FrameRecord> records;
   std::uint64_t records_hash = 0;
 };
+
+// What a run would do, without running a frame: for `framesim explain`.
+struct Plan {
+  struct EffectState {
+    std::string name;
+    std::optional<std::string> declared;  // with its settings, as the command line takes them
+    std::optional<std::string> inert;     // declared: why it cannot change this run
+    Hook hooks{};                         // declared: where it acts
+    Columns columns = Columns::none;      // declared: workload columns that it reads
+  };
+  RunResult parts;                   // names of all parts; no records
+  std::vector<EffectState> effects;  // every registered one, in the order in which they apply
+  PolicyTraits policy;
+  Overlap overlap;
+  EngineKind asked = EngineKind::automatic, engine = EngineKind::automatic;
+};
+Plan plan(const RunSpec& spec, const Scene& scene);
 
 // Looks up and makes every part without running a frame. Throws InputError for whatever is wrong, so that a list of
 // runs can be checked before the first one starts.

@@ -16,6 +16,7 @@ struct Session {
 void add_list(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 
 }  // namespace framesim

@@ -51,8 +51,10 @@ class SceneWorkload final : public WorkloadSource {
     facts_.instances = scene.instances.size();
     facts_.frames = static_cast<std::int64_t>(scene.camera.poses.size());
     facts_.screen_px = static_cast<double>(scene.screen.width) * scene.screen.height;
+    facts_.focal_px = focal_px_;
     for (std::size_t t = 0; t < scene.types.size(); ++t) add_static_facts(t);
     facts_.full_detail_facts = count_polygons();
+    facts_.single_level = is_single_level();
   }
 
   const SceneFacts& scene() const override { return facts_; }
@@ -108,6 +110,17 @@ class SceneWorkload final : public WorkloadSource {
       if (!inner && rows.kind[row] != ItemKind::bundle) polygons += finest(row).polygons;
     }
     return polygons;
+  }
+
+  // A tree may be presented as blocks, and a block has a level a cut.
+  bool is_single_level() const {
+    bool single = scene_.instances.subtree_end.empty();
+    for (std::size_t t = 0; t < facts_.types.size(); ++t) {
+      const ObjectType& type = facts_.types[t];
+      single = single && type.levels.size() == 1 && type_facts_[t].view == ViewPart::none &&
+               !(type.continuous && type.stand_in_levels > 1);
+    }
+    return single;
   }
 
   const Facts& finest(std::size_t row) const { return scene_.types[index(scene_.instances.type[row])].levels.back(); }

@@ -40,7 +40,7 @@ double benefit(const Facts& facts, const ObjectType& type, double area_px) {
   if (facts.stated_benefit) return *facts.stated_benefit;
   if (facts.resolution < 1) return stand_in_benefit(facts, type, area_px);
   switch (type.benefit) {
-    case BenefitModel::funkhouser: return area_px * accuracy(facts, area_px) * type.importance;
+    case BenefitModel::funkhouser: return area_px * accuracy(facts, area_px);
     case BenefitModel::zach_terrain: return std::sqrt(facts.benefit_weight * area_px);
     case BenefitModel::zach_trees: {
       const double trees = facts.benefit_weight;

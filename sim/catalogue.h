@@ -60,7 +60,7 @@ struct ObjectType {
   // Levels at x = 1/2^(n-1) .. 1/2, 1 that stand in for the curve where a policy handles discrete levels only.
   int stand_in_levels = 6;
   BenefitModel benefit = BenefitModel::funkhouser;
-  double importance = 1;   // 0..1, semantics
+  double importance = 1;   // 0..1: counts in the benefit where the effect semantics is declared, and in robin-hood's values
   double radius_m = 1;     // bounding sphere of an instance of scale 1
   double area_m2 = 1;      // un-projected area of an instance of scale 1
 };

@@ -18,6 +18,7 @@ Picoseconds overlapped_time(Picoseconds t_l, Picoseconds t_r, double serial_shar
 class ClosedForm final : public Engine {
  public:
   explicit ClosedForm(double serial_share);
+  EngineKind kind() const override { return EngineKind::closed_form; }
   // Throws InternalError naming the simulated time if the clock would pass 2^63 ps, and for a negative duration.
   FrameTimes run(const FrameWork& work) override;
 

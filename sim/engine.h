@@ -16,6 +16,7 @@
 
 #include <array>
 #include <memory>
+#include <string_view>
 
 #include "sim/machine.h"
 #include "sim/units.h"
@@ -49,10 +50,13 @@ struct FrameTimes {
 };
 
 enum class EngineKind : std::uint8_t { automatic, recurrence, events, closed_form };
+inline constexpr std::array<std::string_view, 4> kEngineKindNames = {"auto", "recurrence", "events", "closed-form"};
 
 class Engine {
  public:
   virtual ~Engine() = default;
+  // Which of the three this is; never `automatic`.
+  virtual EngineKind kind() const = 0;
   // Runs the next frame. Throws InternalError when the clock would pass 2^63 ps.
   virtual FrameTimes run(const FrameWork& work) = 0;
 };

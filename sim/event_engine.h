@@ -71,6 +71,7 @@ class EventEngine final : public Engine {
  public:
   // Uses primitive_fifo, pixel_fifo and overlap.frames_in_flight of `machine`.
   explicit EventEngine(const MachineProfile& machine);
+  EngineKind kind() const override { return EngineKind::events; }
   // Throws as StagedRecurrence does, and must not be used again after a throw.
   FrameTimes run(const FrameWork& work) override;
 

@@ -42,7 +42,8 @@ namespace framesim {
   X(std::int64_t, critical_primitive_ps, "ps", "critical path: per-primitive stage")                       \
   X(std::int64_t, critical_pixel_ps, "ps", "critical path: per-pixel stage")                               \
   X(std::int64_t, critical_backlog_ps, "ps", "critical path: behind earlier frames")                       \
-  X(std::int64_t, critical_present_ps, "ps", "critical path: swap and waiting for the vertical blank")
+  X(std::int64_t, critical_present_ps, "ps", "critical path: swap and waiting for the vertical blank") \
+  X(std::int64_t, fidelity, "", "engine that computed the times: 0 closed form, 1 recurrence, 2 events")
 
 struct FrameRecord {
 #define X(type, name, unit, meaning) type name{};
@@ -56,7 +57,8 @@ struct FrameColumn {
 std::span<const FrameColumn> frame_columns();
 std::string frame_csv_header();
 std::string to_csv(const FrameRecord& record);  // doubles with 17 significant digits
-// FNV-1a over the bits of all columns of all records, in order.
+// FNV-1a over the bits of all columns of all records, in order. `fidelity` is one of them: recurrence and events agree in
+// all others but the critical path, and their hashes differ.
 std::uint64_t hash(std::span<const FrameRecord> records);
 
 }  // namespace framesim

@@ -33,6 +33,13 @@ const AlgorithmCosts& costs_of(const MachineProfile& profile, Algorithm algorith
   return profile.algorithm[static_cast<std::size_t>(algorithm)];
 }
 
+void append(double submit_s, Machine::StageTimes times, std::uint32_t item, CommandColumns& commands) {
+  commands.submit_ps.push_back(ceil_picoseconds(submit_s).count());
+  commands.primitive_ps.push_back(ceil_picoseconds(times.primitive_s).count());
+  commands.pixel_ps.push_back(ceil_picoseconds(times.pixel_s).count());
+  commands.item.push_back(item);
+}
+
 }  // namespace
 
 Overlap parse_overlap(std::string_view text, const InputLocation& where) {
@@ -119,22 +126,20 @@ Machine::StageTimes Machine::draw_time(const Facts& facts, double area_px, doubl
           .pixel_s = pixel_time(costs, facts.coverage * area_px * resolution)};
 }
 
+void Machine::draw(const Workload& workload, std::size_t item, std::size_t level, double resolution,
+                   CommandColumns& commands) const {
+  const Facts& facts = workload.level_facts(item, level);
+  const bool scale = workload.kind[item] == ItemKind::curve && workload.type_of(item).draws_scale_below_knee;
+  const double further_draws = std::max(0.0, draws_issued(facts, resolution, scale) - 1);
+  const StageTimes times = draw_time(facts, workload.projected_area_px[item], resolution, scale);
+  append(profile_.submit_s + profile_.submit_draw_s * further_draws, times, static_cast<std::uint32_t>(item), commands);
+}
+
 void Machine::command(const Workload& workload, const Selection& selection, CommandColumns& commands) const {
-  const auto append = [&](double submit_s, StageTimes times, std::uint32_t item) {
-    commands.submit_ps.push_back(ceil_picoseconds(submit_s).count());
-    commands.primitive_ps.push_back(ceil_picoseconds(times.primitive_s).count());
-    commands.pixel_ps.push_back(ceil_picoseconds(times.pixel_s).count());
-    commands.item.push_back(item);
-  };
-  append(0, {.primitive_s = 0, .pixel_s = profile_.clear_s}, kClearCommand);
+  append(0, {.primitive_s = 0, .pixel_s = profile_.clear_s}, kClearCommand, commands);
   for (std::size_t i = 0; i < workload.size(); ++i) {
     if (selection.level[i] == kNotDrawn) continue;
-    const Facts& facts = workload.level_facts(i, static_cast<std::size_t>(selection.level[i]));
-    const bool scale = workload.kind[i] == ItemKind::curve && workload.type_of(i).draws_scale_below_knee;
-    const double resolution = selection.resolution[i];
-    const double further_draws = std::max(0.0, draws_issued(facts, resolution, scale) - 1);
-    append(profile_.submit_s + profile_.submit_draw_s * further_draws,
-           draw_time(facts, workload.projected_area_px[i], resolution, scale), static_cast<std::uint32_t>(i));
+    draw(workload, i, static_cast<std::size_t>(selection.level[i]), selection.resolution[i], commands);
   }
 }
 

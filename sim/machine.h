@@ -78,6 +78,9 @@ class Machine {
   // draws scale as `draws_issued` says.
   StageTimes draw_time(const Facts& facts, double area_px, double resolution, bool draws_scale_below_knee) const;
 
+  // Appends the command that draws `level` of `item` at `resolution`: its submission and both GPU stages.
+  void draw(const Workload& workload, std::size_t item, std::size_t level, double resolution,
+            CommandColumns& commands) const;
   // Appends the clear and one command for each drawn item, in item order.
   void command(const Workload& workload, const Selection& selection, CommandColumns& commands) const;
 

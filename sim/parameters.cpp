@@ -95,6 +95,23 @@ std::string to_string(const Spec& spec) {
   return text;
 }
 
+std::optional<Setting> take_setting(Settings& settings, std::string_view key) {
+  const auto found = std::find_if(settings.begin(), settings.end(), [&](const Setting& s) { return s.key == key; });
+  if (found == settings.end()) return std::nullopt;
+  Setting taken = std::move(*found);
+  settings.erase(found);
+  return taken;
+}
+
+ParameterInfo text_parameter(std::string_view key, std::string_view fallback, std::string_view allowed,
+                             std::string_view help) {
+  return {.name = std::string(key),
+          .unit = "",
+          .default_text = std::string(fallback),
+          .allowed = std::string(allowed),
+          .help = std::string(help)};
+}
+
 namespace detail {
 
 double parse_parameter(const Setting& setting, ValueKind kind, const ParameterLimits& limits) {

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,6 +59,13 @@ struct ParameterLimits {
 struct ParameterInfo {
   std::string name, unit, default_text, allowed, help;
 };
+
+// Free text (a name), which no table reads: taken out of `settings` before the table reads the rest; nothing if it is
+// not there.
+std::optional<Setting> take_setting(Settings& settings, std::string_view key);
+// How such a parameter is listed.
+ParameterInfo text_parameter(std::string_view key, std::string_view fallback, std::string_view allowed,
+                             std::string_view help);
 
 namespace detail {
 struct ParsedValue {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "sim/check.h"
 #include "sim/clock.h"
@@ -10,8 +11,8 @@
 namespace framesim {
 namespace {
 
-// Which of a command's four maxima was decided by its second term. A tie is decided by the first: the walk back then stays
-// with the command and goes up its own stages.
+// Which of a command's four maxima was decided by its second term. A tie is decided by the first: the walk back then
+// stays with the command and goes up its own stages.
 enum Bound : std::uint8_t {
   kPrimitiveFifoFull = 1,  // P[i] by S1[i-B1]
   kPrimitiveBusy = 2,      // S1[i] by E1[i-1]
@@ -22,23 +23,41 @@ enum Bound : std::uint8_t {
 // Departures inside the pipeline, in the order in which a command passes them.
 enum class Departure : std::uint8_t { submitted, primitive_start, primitive_end, pixel_start, pixel_end };
 
-std::size_t ring_size(int capacity, const char* name) {
+std::size_t capacity_of(int capacity, const char* name) {
   FRAMESIM_CHECK(capacity >= 1, fmt::format("{} is {}", name, capacity));
   return static_cast<std::size_t>(capacity);
 }
 
+// Starts that a window takes, at least, before it slides back: enough that sliding costs nothing beside the loop.
+constexpr std::size_t kSlide = 512;
+
+constexpr std::int64_t kEndOfClock = std::numeric_limits<std::int64_t>::max();
+
 // True if a + b passes the end of the clock; a becomes the sum.
 bool add(std::int64_t& a, std::int64_t b) { return __builtin_add_overflow(a, b, &a); }
+
+// a + b without a check: wraps where `add` reports.
+std::int64_t sum(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
 
 Picoseconds& part(FrameTimes& times, Critical critical) { return times.critical[static_cast<std::size_t>(critical)]; }
 
 }  // namespace
 
-StagedRecurrence::StagedRecurrence(const MachineProfile& machine, bool critical_path) : critical_path_(critical_path) {
-  primitive_starts_.time.assign(ring_size(machine.primitive_fifo, "primitive_fifo"), 0);
-  pixel_starts_.time.assign(ring_size(machine.pixel_fifo, "pixel_fifo"), 0);
-  shown_.time.assign(ring_size(machine.overlap.frames_in_flight, "frames_in_flight"), 0);
+StagedRecurrence::StartWindow::StartWindow(std::size_t fifo) : places(fifo), time(fifo + std::max(fifo, kSlide), 0) {}
+
+void StagedRecurrence::StartWindow::make_room() {
+  const auto first = time.begin() + static_cast<std::ptrdiff_t>(oldest);
+  std::copy(first, first + static_cast<std::ptrdiff_t>(places), time.begin());
+  oldest = 0;
 }
+
+StagedRecurrence::StagedRecurrence(const MachineProfile& machine, bool critical_path)
+    : critical_path_(critical_path),
+      primitive_starts_(capacity_of(machine.primitive_fifo, "primitive_fifo")),
+      pixel_starts_(capacity_of(machine.pixel_fifo, "pixel_fifo")),
+      shown_(capacity_of(machine.overlap.frames_in_flight, "frames_in_flight"), 0) {}
 
 FrameTimes StagedRecurrence::run(const FrameWork& work) {
   const CommandColumns& commands = work.commands;
@@ -47,15 +66,11 @@ FrameTimes StagedRecurrence::run(const FrameWork& work) {
                  fmt::format("frame {} has {} submit, {} primitive and {} pixel times", frame_, commands.size(),
                              commands.primitive_ps.size(), commands.pixel_ps.size()));
   FrameTimes times;
-  std::int64_t& waited_for = shown_.time[shown_.next];  // frame k-n
+  std::int64_t& waited_for = shown_[next_shown_];  // frame k-n
   times.cpu_start = SimTime(std::max(submitted_, waited_for));
   submitted_ = advance(times.cpu_start, work.cpu_before).count();
   const std::int64_t drawn_before = pixel_end_;
-  if (critical_path_) {
-    run_commands<true>(commands, times);
-  } else {
-    run_commands<false>(commands, times);
-  }
+  run_commands(commands, times);
   times.submitted = SimTime(submitted_);
   times.drawn = SimTime(pixel_end_);
   times.shown = present_time(advance(times.drawn, work.swap), work.vsync_period,
@@ -65,62 +80,101 @@ FrameTimes StagedRecurrence::run(const FrameWork& work) {
   times.frame_time = frame_ > 0 ? times.shown - SimTime(last_shown_) : times.latency;
   if (critical_path_) trace_critical_path(work, times);
   last_shown_ = waited_for = times.shown.count();
-  shown_.next = shown_.next + 1 == shown_.time.size() ? 0 : shown_.next + 1;
+  next_shown_ = next_shown_ + 1 == shown_.size() ? 0 : next_shown_ + 1;
   ++frame_;
   return times;
 }
 
-// The loop. Times live in registers; an overflow or a negative duration is noted on the way and refused at the end.
-template <bool kTrace>
+// In pieces for which both windows have room. The bounds of a command are only kept where they are asked for.
 void StagedRecurrence::run_commands(const CommandColumns& commands, FrameTimes& times) {
   const std::size_t count = commands.size();
-  const std::int64_t* const submit = commands.submit_ps.data();
-  const std::int64_t* const primitive = commands.primitive_ps.data();
-  const std::int64_t* const pixel = commands.pixel_ps.data();
-  std::int64_t* const s1_ring = primitive_starts_.time.data();
-  std::int64_t* const s2_ring = pixel_starts_.time.data();
-  const std::size_t b1 = primitive_starts_.time.size(), b2 = pixel_starts_.time.size();
-  std::size_t at1 = primitive_starts_.next, at2 = pixel_starts_.next;
+  if (critical_path_) bound_.assign(count, 0);
+  for (std::size_t begin = 0; begin < count;) {
+    if (primitive_starts_.room() == 0) primitive_starts_.make_room();
+    if (pixel_starts_.room() == 0) pixel_starts_.make_room();
+    const std::size_t end = begin + std::min({count - begin, primitive_starts_.room(), pixel_starts_.room()});
+    const std::size_t first = primitive_starts_.oldest + primitive_starts_.places;
+    if (critical_path_ || !run_plain(commands, begin, end)) run_careful(commands, begin, end, times.cpu_start);
+    if (begin == 0) times.first_draw = SimTime(primitive_starts_.time[first]);
+    primitive_starts_.oldest += end - begin;
+    pixel_starts_.oldest += end - begin;
+    begin = end;
+  }
+}
+
+// The loop of every run. Nothing in it but the equations: times live in registers, no maximum is a branch, and the
+// bitwise or of the durations is all that is kept for checks. It is negative if a duration is, and at least as large as
+// each of them; no departure is later than the latest before plus all durations, so that a small one proves that
+// nothing passed the end of the clock. If it proves nothing, false is returned and nothing has changed: starts were
+// only appended behind the window.
+bool StagedRecurrence::run_plain(const CommandColumns& commands, std::size_t begin, std::size_t end) {
+  const std::size_t count = end - begin;
+  const std::int64_t* const submit = commands.submit_ps.data() + begin;
+  const std::int64_t* const primitive = commands.primitive_ps.data() + begin;
+  const std::int64_t* const pixel = commands.pixel_ps.data() + begin;
+  const std::int64_t* const s1_before = primitive_starts_.time.data() + primitive_starts_.oldest;  // S1[i-B1]
+  const std::int64_t* const s2_before = pixel_starts_.time.data() + pixel_starts_.oldest;          // S2[i-B2]
+  std::int64_t* const s1 = primitive_starts_.time.data() + primitive_starts_.oldest + primitive_starts_.places;
+  std::int64_t* const s2 = pixel_starts_.time.data() + pixel_starts_.oldest + pixel_starts_.places;
+  std::int64_t p = submitted_, e1 = primitive_end_, e2 = pixel_end_, bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bits |= submit[i] | primitive[i] | pixel[i];
+    p = std::max(sum(p, submit[i]), s1_before[i]);
+    e1 = std::max(p, e1);
+    s1[i] = e1;
+    e1 = std::max(sum(e1, primitive[i]), s2_before[i]);
+    e2 = std::max(e1, e2);
+    s2[i] = e2;
+    e2 = sum(e2, pixel[i]);
+  }
+  const std::int64_t latest = std::max({submitted_, primitive_end_, pixel_end_});
+  if (bits < 0 || bits > (kEndOfClock - latest) / (3 * static_cast<std::int64_t>(count))) return false;
+  submitted_ = p, primitive_end_ = e1, pixel_end_ = e2;
+  return true;
+}
+
+// The same, step by step: refuses negative durations and the end of the clock, and keeps what decided each maximum if
+// that is asked for.
+void StagedRecurrence::run_careful(const CommandColumns& commands, std::size_t begin, std::size_t end,
+                                   SimTime cpu_start) {
+  std::int64_t* s1_before = primitive_starts_.time.data() + primitive_starts_.oldest;
+  std::int64_t* s2_before = pixel_starts_.time.data() + pixel_starts_.oldest;
   std::int64_t p = submitted_, e1 = primitive_end_, e2 = pixel_end_;
   std::int64_t negative = 0;
   bool overflow = false;
-  if constexpr (kTrace) bound_.assign(count, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    negative |= submit[i] | primitive[i] | pixel[i];
-    overflow |= add(p, submit[i]);
-    const std::int64_t place1 = s1_ring[at1];  // S1[i-B1]
-    if constexpr (kTrace) bound_[i] |= place1 > p ? kPrimitiveFifoFull : 0;
-    p = std::max(p, place1);
-    if constexpr (kTrace) bound_[i] |= e1 > p ? kPrimitiveBusy : 0;
-    e1 = std::max(p, e1);  // now S1[i]
-    s1_ring[at1] = e1;
-    if (i == 0) times.first_draw = SimTime(e1);
-    overflow |= add(e1, primitive[i]);
-    const std::int64_t place2 = s2_ring[at2];  // S2[i-B2]
-    if constexpr (kTrace) bound_[i] |= place2 > e1 ? kPixelFifoFull : 0;
-    e1 = std::max(e1, place2);
-    if constexpr (kTrace) bound_[i] |= e2 > e1 ? kPixelBusy : 0;
-    e2 = std::max(e1, e2);  // now S2[i]
-    s2_ring[at2] = e2;
-    overflow |= add(e2, pixel[i]);
-    at1 = at1 + 1 == b1 ? 0 : at1 + 1;
-    at2 = at2 + 1 == b2 ? 0 : at2 + 1;
+  for (std::size_t i = begin; i < end; ++i, ++s1_before, ++s2_before) {
+    const std::int64_t submit = commands.submit_ps[i], primitive = commands.primitive_ps[i];
+    const std::int64_t pixel = commands.pixel_ps[i];
+    unsigned bound = 0;
+    negative |= submit | primitive | pixel;
+    overflow |= add(p, submit);
+    bound |= *s1_before > p ? kPrimitiveFifoFull : 0;
+    p = std::max(p, *s1_before);
+    bound |= e1 > p ? kPrimitiveBusy : 0;
+    e1 = std::max(p, e1);
+    s1_before[primitive_starts_.places] = e1;  // S1[i]
+    overflow |= add(e1, primitive);
+    bound |= *s2_before > e1 ? kPixelFifoFull : 0;
+    e1 = std::max(e1, *s2_before);
+    bound |= e2 > e1 ? kPixelBusy : 0;
+    e2 = std::max(e1, e2);
+    s2_before[pixel_starts_.places] = e2;  // S2[i]
+    overflow |= add(e2, pixel);
+    if (critical_path_) bound_[i] = static_cast<std::uint8_t>(bound);
   }
   FRAMESIM_CHECK(negative >= 0, fmt::format("frame {}, which starts at simulated time {} ps, has a negative duration",
-                                            frame_, times.cpu_start.count()));
+                                            frame_, cpu_start.count()));
   FRAMESIM_CHECK(!overflow,
                  fmt::format("the clock would pass 2^63 ps in frame {}, which starts at simulated time {} ps", frame_,
-                             times.cpu_start.count()));
-  primitive_starts_.next = at1;
-  pixel_starts_.next = at2;
+                             cpu_start.count()));
   submitted_ = p, primitive_end_ = e1, pixel_end_ = e2;
 }
 
-// Walks from `shown` back to `cpu_start` along the terms that decided each maximum. `time` is the departure reached; waiting
-// for a place or a server takes no time of its own: the time is the one of the command that was waited for.
+// Walks from `shown` back to `cpu_start` along the terms that decided each maximum. `time` is the departure reached;
+// waiting for a place or a server takes no time of its own: the time is the one of the command that was waited for.
 void StagedRecurrence::trace_critical_path(const FrameWork& work, FrameTimes& times) {
-  const auto b1 = static_cast<std::int64_t>(primitive_starts_.time.size());
-  const auto b2 = static_cast<std::int64_t>(pixel_starts_.time.size());
+  const auto b1 = static_cast<std::int64_t>(primitive_starts_.places);
+  const auto b2 = static_cast<std::int64_t>(pixel_starts_.places);
   part(times, Critical::present) = times.shown - times.drawn;
   SimTime time = times.drawn;
   Departure at = Departure::pixel_end;

@@ -37,6 +37,21 @@ double fineness(const Workload& workload, const Selection& selection, std::size_
   return part * selection.level[item] / static_cast<double>(levels - 1);
 }
 
+// Code of the column `fidelity`.
+std::int64_t fidelity_of(EngineKind kind) {
+  switch (kind) {
+    case EngineKind::closed_form:
+      return 0;
+    case EngineKind::recurrence:
+      return 1;
+    case EngineKind::events:
+      return 2;
+    case EngineKind::automatic:
+      break;
+  }
+  fail_check(__FILE__, __LINE__, "an engine is of one kind", fmt::format("kind {}", static_cast<int>(kind)));
+}
+
 }  // namespace
 
 Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& config)
@@ -152,6 +167,7 @@ void Simulation::draw() {
   record_.critical_pixel_ps = critical(Critical::pixel);
   record_.critical_backlog_ps = critical(Critical::backlog);
   record_.critical_present_ps = critical(Critical::present);
+  record_.fidelity = fidelity_of(engine_->kind());
 }
 
 // Benefit, and how detailed the picture is. In a hierarchy a drawn node stands for its subtree.

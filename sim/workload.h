@@ -123,7 +123,9 @@ struct SceneFacts {
   std::size_t instances = 0;      // ids are 0 .. instances-1
   std::int64_t frames = 0;        // length of the camera path
   double screen_px = 0;
+  double focal_px = 0;            // pixels from the eye to the screen; 0 = not known
   double full_detail_facts = 0;   // polygons of the whole scene at its finest levels, for reports
+  bool single_level = false;      // whatever the request and the frame, no item has two levels to choose from
 };
 
 // Fills the workload of any frame of a scene. Implemented in scenes/.

@@ -105,6 +105,9 @@ TEST_CASE("third-party libraries show in their folders only") {
   CHECK(leaks("boost/", {"sim/stage_graph.cpp", "scenes/"}) == kNone);
   CHECK(leaks("CLI/", {"experiments/"}) == kNone);
   CHECK(leaks("catch2/", {"tests/"}) == kNone);
+  CHECK(leaks("benchmark/", {"experiments/bench/"}) == kNone);
+  CHECK(leaks("systemc", {"experiments/bench/"}) == kNone);
+  CHECK(leaks("ns3/", {"experiments/bench/"}) == kNone);
   CHECK(leaks("Random123/", {"sim/random_stream.cpp", "tests/sim/"}) == kNone);
 }
 

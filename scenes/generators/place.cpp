@@ -43,22 +43,8 @@ float round_up(double value) {
 }  // namespace
 
 std::string take_text(Settings& settings, std::string_view key, std::string_view fallback) {
-  std::string text(fallback);
-  const auto matches = [&](const Setting& setting) { return setting.key == key; };
-  for (const Setting& setting : settings) {
-    if (matches(setting)) text = setting.value;
-  }
-  settings.erase(std::remove_if(settings.begin(), settings.end(), matches), settings.end());
-  return text;
-}
-
-ParameterInfo text_parameter(std::string_view key, std::string_view fallback, std::string_view allowed,
-                             std::string_view help) {
-  return {.name = std::string(key),
-          .unit = "",
-          .default_text = std::string(fallback),
-          .allowed = std::string(allowed),
-          .help = std::string(help)};
+  const std::optional<Setting> given = take_setting(settings, key);
+  return given ? given->value : std::string(fallback);
 }
 
 TypeId find_type(const Scene& scene, std::string_view name, const InputLocation& where) {

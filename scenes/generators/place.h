@@ -13,9 +13,6 @@ namespace framesim {
 // A free-text parameter: parameter tables hold numbers and words only. Removes the setting `key` from `settings` and
 // returns its value, or `fallback` if it is not there.
 std::string take_text(Settings& settings, std::string_view key, std::string_view fallback);
-// How such a parameter is listed.
-ParameterInfo text_parameter(std::string_view key, std::string_view fallback, std::string_view allowed,
-                             std::string_view help);
 
 TypeId find_type(const Scene& scene, std::string_view name, const InputLocation& where);
 std::uint16_t find_cell(const Scene& scene, std::string_view name, const InputLocation& where);  // "" is kNoCell

@@ -42,7 +42,10 @@ class Looped : public WorkloadSource {
   std::int64_t period_;
 };
 
-std::int64_t allocations_in_steady_state(const std::string& scene_text, const PolicyEntry& entry) {
+const std::vector<std::string> kCommonEffects = {"jitter", "vsync"};
+
+std::int64_t allocations_in_steady_state(const std::string& scene_text, const PolicyEntry& entry,
+                                         const std::vector<std::string>& effect_names = kCommonEffects) {
   const Scene scene = load_scene(parse_spec(scene_text));
   const auto source = make_workload_source(scene);
   constexpr std::int64_t period = 5;
@@ -50,10 +53,14 @@ std::int64_t allocations_in_steady_state(const std::string& scene_text, const Po
   const auto policy = entry.make({});
   const auto planner = find_entry("planner", planners(), {std::string(policy->traits().planner)}).make({});
   const auto estimator = find_entry("estimator", estimators(), {"table"}).make({});
-  const auto jitter = find_entry("effect", effects(), {"jitter"}).make({}, 1);
-  const auto vsync = find_entry("effect", effects(), {"vsync"}).make({}, 1);
+  std::vector<std::unique_ptr<Effect>> made;
+  std::vector<Effect*> active;
+  for (const std::string& name : effect_names) {
+    made.push_back(find_entry("effect", effects(), {name}).make({}, 1));
+    active.push_back(made.back().get());
+  }
   const Machine machine(scene.machine);
-  Simulation simulation({looped, *policy, *planner, *estimator, machine, scene.logic, {jitter.get(), vsync.get()}},
+  Simulation simulation({looped, *policy, *planner, *estimator, machine, scene.logic, active},
                         {.target_s = scene.targets_s[0]});
   // Feedback policies wander through levels for a while; their columns have met their largest frame after some rounds.
   for (int i = 0; i < 20 * period; ++i) simulation.step();
@@ -76,6 +83,18 @@ TEST_CASE("no policy allocates in steady state, on flat, indoor and hierarchical
 TEST_CASE("the planning over a hierarchy does not allocate in steady state") {
   const Spec spec{"mixed-gradient"};
   CHECK(allocations_in_steady_state("styria", find_entry("policy", policies(), spec)) == 0);
+}
+
+TEST_CASE("no effect allocates in steady state, alone or with all others") {
+  const PolicyEntry& policy = find_entry("policy", policies(), {"robin-hood"});
+  std::vector<std::string> all;
+  for (const EffectEntry& entry : effects()) {
+    CAPTURE(entry.name);
+    all.emplace_back(entry.name);
+    CHECK(allocations_in_steady_state("street", policy, {all.back()}) == 0);
+  }
+  CHECK(allocations_in_steady_state("street", policy, all) == 0);
+  CHECK(allocations_in_steady_state("museum", policy, all) == 0);
 }
 
 TEST_CASE("the counter of this test counts") {

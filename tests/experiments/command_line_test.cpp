@@ -38,7 +38,7 @@ std::vector<std::string> small_with(const std::vector<std::string>& more) {
 }  // namespace
 
 TEST_CASE("command line: --help of each verb has examples and goes to stdout") {
-  for (const char* verb : {"list", "run", "compare", "check"}) {
+  for (const char* verb : {"list", "run", "compare", "explain", "check"}) {
     CAPTURE(verb);
     const ProgramRun help = run_program({verb, "--help"});
     CHECK(help.exit_code == 0);
@@ -94,7 +94,7 @@ TEST_CASE("command line: the frames file has a heading and one row a frame, and 
 }
 
 TEST_CASE("command line: recurrence and event queue give the same frame rows") {
-  // Columns up to the critical path, which only the recurrence traces.
+  // Columns up to the critical path, which only the recurrence traces; the one after it says which engine it was.
   const TestFolder folder;
   for (const char* engine : {"recurrence", "events"}) {
     const ProgramRun run = run_program({"run", "auditorium", "--policy", "feedback", "--frames", "20", "--fidelity",
@@ -173,13 +173,72 @@ TEST_CASE("command line: effects are added, replaced and taken away") {
   CHECK(has(frames({"--effect", "jitter:sigma=0.1"}), "jitter:sigma=0.1"));
   // The scene declares vsync:rate=off, which is inert; a rate of 60 Hz in its place is not.
   CHECK(has(frames({}), "vsync:rate=off left out"));
-  CHECK(has(frames({"--effect", "vsync:rate=60Hz"}), "effects        vsync:rate=60Hz\n"));
-  CHECK(has(frames({"--no-effect", "vsync"}), "effects        none\n"));
+  CHECK(has(frames({"--effect", "vsync:rate=60Hz"}), "effects        semantics, vsync:rate=60Hz\n"));
+  CHECK(has(frames({"--no-effect", "vsync"}), "effects        semantics\n"));
+  CHECK(has(frames({"--no-effect", "all"}), "effects        none\n"));
   CHECK(frames({"--effect", "jitter", "--seed", "2"}) != frames({"--effect", "jitter", "--seed", "3"}));
+  // They apply in the order of the registry, in whatever order they are declared.
+  const std::vector<std::string> bare = {"--no-effect", "all"};
+  const auto with_bare = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), bare.begin(), bare.end());
+    return frames(more);
+  };
+  const std::string ordered = with_bare({"--effect", "frames-in-flight", "--effect", "jitter", "--effect", "vsync"});
+  CHECK(has(ordered, "effects        frames-in-flight, jitter, vsync\n"));
+  CHECK(ordered == with_bare({"--effect", "vsync", "--effect", "jitter", "--effect", "frames-in-flight"}));
+  // Forced in, an inert effect runs, and only the line that says so differs.
+  CHECK(has(with_bare({"--effect", "jitter:sigma=0", "--force-inert-effects"}), "effects        jitter:sigma=0\n"));
+  CHECK_FALSE(has(run_program({"run", "--help"}).out, "force-inert"));
+}
+
+TEST_CASE("command line: an effect of the machine shows in the machine") {
+  const ProgramRun run = run_program({"run", "street", "--policy", "static", "--effect", "frames-in-flight:n=3"});
+  CHECK(run.exit_code == 0);
+  CHECK(has(run.out, "overlap        staged:3\n"));
+}
+
+TEST_CASE("command line: explain names each effect as active, inert with its reason, or not declared") {
+  const ProgramRun run =
+      run_program({"explain", "street", "--policy", "distance", "--no-effect", "semantics", "--effect", "jitter",
+                   "--effect", "frames-in-flight:n=1", "--effect", "submission:command=7us"});
+  CAPTURE(run.out, run.err);
+  CHECK(run.exit_code == 0);
+  const auto line = [&](const std::string& name, const std::string& value) {
+    CAPTURE(name);
+    const std::size_t at = run.out.find("\n  " + name + " ");
+    REQUIRE(at != std::string::npos);
+    const std::string text = run.out.substr(at + 1, run.out.find('\n', at + 1) - at - 1);
+    CAPTURE(text);
+    CHECK(has(text, value));
+  };
+  line("jitter", "active: jitter");
+  line("submission", "active: submission:command=7us");
+  line("frames-in-flight", "inert: the machine has n=1 already");
+  line("vsync", "inert: the display does not wait: rate is off (vsync:rate=off)");
+  line("logic-spikes", "not declared");
+  // Hooks and columns that follow: distance is what this policy reads, the view angle nothing reads.
+  line("machine", "submission (");
+  line("commands", "jitter (");
+  line("workload", "empty");
+  line("distance", "computed for policy distance");
+  line("view angle", "not computed");
+  line("estimated cost", "always computed");
+}
+
+TEST_CASE("command line: explain says which engine follows, and which columns an effect asks for") {
+  const auto explained = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"explain", "street"});
+    return run_program(more).out;
+  };
+  CHECK(has(explained({}), "engine         recurrence: exact for all active effects, overlap staged:1"));
+  CHECK(has(explained({"--fidelity", "events"}), "engine         events: asked for; exact"));
+  CHECK(has(explained({"--overlap", "serial"}), "engine         closed-form: overlap serial is one formula a frame"));
+  CHECK(has(explained({"--policy", "static", "--effect", "focus"}), "view angle         computed for effects focus\n"));
+  CHECK(has(explained({"--effect", "focus:weight=0"}), "view angle         not computed\n"));
 }
 
 TEST_CASE("command line: wrong words are refused with exit code 2 and the legal ones") {
-  check_refused({}, 2, {"list, run, compare, check"});
+  check_refused({}, 2, {"list, run, compare, explain, check"});
   check_refused({"comapre"}, 2, {"comapre", "did you mean 'compare'"});
   check_refused({"run", "street"}, 2, {"--policy"});
   check_refused({"run", "street", "--policy", "robinhood"}, 2, {"robinhood", "robin-hood", "full-detail"});
@@ -208,7 +267,11 @@ TEST_CASE("command line: wrong words are refused with exit code 2 and the legal 
 
 TEST_CASE("command line: an engine that does not fit the overlap is refused") {
   check_refused({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "recurrence"}, 2,
-                {"overlap"});
+                {"overlap 'serial'", "closed-form"});
+  check_refused({"run", "street", "--policy", "static", "--fidelity", "closed-form"}, 2,
+                {"overlap 'staged", "paper2005"});
+  CHECK(run_program({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "closed-form"})
+            .exit_code == 0);
 }
 
 TEST_CASE("command line: the last policy's mistake stops a comparison before its first run") {

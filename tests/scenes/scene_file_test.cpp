@@ -538,8 +538,9 @@ TEST_CASE("street has the numbers that its file states", "[scene_file][street]")
   CHECK(street.instances.centre[5] == glm::dvec3(4, 2, -40));
   CHECK(street.instances.cell == std::vector<std::uint16_t>{0, 0, 0, 1, 0, 0});
   CHECK(street.instances.kind[3] == ItemKind::curve);
-  REQUIRE(street.effects.size() == 1);
+  REQUIRE(street.effects.size() == 2);
   CHECK(to_string(street.effects[0]) == "vsync:rate=off");
+  CHECK(to_string(street.effects[1]) == "semantics");
 }
 
 TEST_CASE("street takes its parameters", "[scene_file][street]") {

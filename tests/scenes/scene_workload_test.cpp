@@ -93,6 +93,23 @@ TEST_CASE("workload columns of one instance, by hand") {
   CHECK(source->scene().instances == 2);
 }
 
+// Continuous levels count by their stand-ins, 3 here, for policies that take no curves.
+TEST_CASE("a scene says whether nothing in it has a second level") {
+  const auto single_level = [](const ObjectType& type, bool view_levels, bool tree) {
+    Scene scene = empty_scene();
+    scene.types = {discrete_type({10}), type};
+    add_row(scene, 0, {0, 0, -8}, 2);
+    if (view_levels) scene.view_levels[1].part = ViewPart::trunk;
+    if (tree) scene.instances.subtree_end = {1};
+    return make_workload_source(scene)->scene().single_level;
+  };
+  CHECK(single_level(discrete_type({100}), false, false));
+  CHECK_FALSE(single_level(discrete_type({10, 100}), false, false));
+  CHECK_FALSE(single_level(continuous_type(100, 1), false, false));
+  CHECK_FALSE(single_level(discrete_type({100}), true, false));
+  CHECK_FALSE(single_level(discrete_type({100}), false, true));  // as blocks, with a level a cut
+}
+
 TEST_CASE("only the requested columns are filled") {
   Scene scene = empty_scene();
   scene.types = {discrete_type({10})};

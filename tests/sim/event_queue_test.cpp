@@ -1,6 +1,9 @@
 #include "sim/event_queue.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
 
 #include "sim/check.h"
 #include "tests/catch.h"
@@ -73,5 +76,57 @@ TEST_CASE("random schedules come out as a scan for the smallest would take them"
       }
     }
     CHECK(queue.size() == pending.size());
+  }
+}
+
+// Reference: an ordered set of (time, phase, sequence). Long runs of one kind: the queue grows to hundreds, is emptied and
+// grows again, and a copy is taken now and then right after an event was.
+TEST_CASE("long runs of schedules and of takes, down to empty and from copies, keep the order") {
+  std::size_t most = 0, emptied = 0, copies = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    CAPTURE(seed);
+    SplitMix random(seed);
+    EventQueue queue;
+    std::set<std::array<std::int64_t, 3>> pending;
+    std::int64_t sequence = 0;
+    for (int run = 0; run < 20; ++run) {
+      for (std::int64_t i = random.between(0, 200); i > 0; --i) {
+        const std::int64_t time = queue.now().count() + random.between(0, 100), phase = random.between(0, 4);
+        queue.schedule(SimTime(time), static_cast<Phase>(phase), static_cast<std::uint64_t>(7 * sequence));
+        pending.insert({time, phase, sequence++});
+      }
+      most = std::max(most, pending.size());
+      for (std::int64_t i = random.between(0, 300); i > 0 && !pending.empty(); --i) {
+        const std::array<std::int64_t, 3> expected = *pending.begin();
+        pending.erase(pending.begin());
+        const Event event = queue.take();
+        REQUIRE(event.time.count() == expected[0]);
+        REQUIRE(static_cast<std::int64_t>(event.phase) == expected[1]);
+        REQUIRE(static_cast<std::int64_t>(event.sequence) == expected[2]);
+        REQUIRE(static_cast<std::int64_t>(event.payload) == 7 * expected[2]);
+        REQUIRE(queue.size() == pending.size());
+        if (random.chance(5)) {
+          queue = EventQueue(queue);
+          ++copies;
+        }
+      }
+      emptied += pending.empty();
+    }
+  }
+  // The cases that the test is about must have occurred.
+  CHECK(most > 250);
+  CHECK(emptied > 30);
+  CHECK(copies > 100);
+}
+
+// Times up to the end of the clock keep their order: the key holds all 63 bits.
+TEST_CASE("events at the ends of the clock come out in order") {
+  EventQueue queue;
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t time : {kLast, std::int64_t{0}, kLast - 1, std::int64_t{1} << 32, std::int64_t{1}}) {
+    queue.schedule(SimTime(time), Phase::frame_start, 0);
+  }
+  for (const std::int64_t time : {std::int64_t{0}, std::int64_t{1}, std::int64_t{1} << 32, kLast - 1, kLast}) {
+    CHECK(queue.take().time.count() == time);
   }
 }

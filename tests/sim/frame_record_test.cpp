@@ -50,7 +50,7 @@ TEST_CASE("the header line has one name for each column and the record one cell 
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == columns[i].name);
   CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
   CHECK(names.front() == "frame");
-  CHECK(names.back() == "critical_present_ps");
+  CHECK(names.back() == "fidelity");
   CHECK(cells(to_csv(FrameRecord{})).size() == names.size());
   // A unit in the table is the ending of the name.
   for (const FrameColumn& column : columns) {

@@ -123,3 +123,16 @@ TEST_CASE("a spec that cannot be taken apart", "[parameters]") {
   CHECK_THROWS_WITH(parse_spec("p:=1"), "command line: '=1' of 'p' has nothing before the '='");
   CHECK_THROWS_WITH(parse_spec("p:a=1,b=2,a=3"), "command line: parameter 'a' of 'p' is given twice");
 }
+
+TEST_CASE("free text is taken out before the table reads the rest", "[parameters]") {
+  Settings settings = parse_spec("p:a=1,task=physics,b=2", {"x.toml", 4, 5}).settings;
+  const std::optional<Setting> task = take_setting(settings, "task");
+  REQUIRE(task);
+  CHECK(task->value == "physics");
+  CHECK(to_string(task->where) == "x.toml:4:5");
+  REQUIRE(settings.size() == 2);
+  CHECK(settings[0].key == "a");
+  CHECK(settings[1].key == "b");
+  CHECK_FALSE(take_setting(settings, "task"));
+  CHECK(settings.size() == 2);
+}

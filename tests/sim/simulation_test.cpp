@@ -145,3 +145,25 @@ TEST_CASE("the second frame knows the first: decision time, switches, what the p
   CHECK(run.simulation.step().switches == 0);
   CHECK_THROWS_AS(run.simulation.step(), InternalError);
 }
+
+// 1 is the recurrence, which a staged overlap gets; asked for, the same times come from the events, 2. Serial is a formula, 0.
+TEST_CASE("the record says which engine computed its times") {
+  CHECK(Run().simulation.step().fidelity == 1);
+  const auto step_with = [](EngineKind kind, const char* overlap) {
+    Run run;
+    MachineProfile profile = machine_of_round_numbers();
+    profile.overlap = parse_overlap(overlap);
+    const Machine machine(profile);
+    Simulation simulation({run.scene, run.policy, *run.planner, *run.estimator, machine, run.logic, {}},
+                          {.target_s = 5e-3, .engine = {.kind = kind}});
+    return simulation.step();
+  };
+  FrameRecord recurrence = step_with(EngineKind::recurrence, "staged:1"),
+              events = step_with(EngineKind::events, "staged:1");
+  CHECK(recurrence.fidelity == 1);
+  CHECK(events.fidelity == 2);
+  CHECK(step_with(EngineKind::automatic, "serial").fidelity == 0);
+  // All else agrees, bit for bit.
+  recurrence.fidelity = events.fidelity;
+  CHECK(to_csv(recurrence) == to_csv(events));
+}

@@ -1,17 +1,11 @@
 #include <cmath>
 
-#include "sim/effect.h"
 #include "sim/random_stream.h"
-#include "tests/catch.h"
+#include "tests/sim/effects/effect_context.h"
 
 using namespace framesim;
 
 namespace {
-
-std::unique_ptr<Effect> make(const char* spec_text, std::uint64_t seed) {
-  const Spec spec = parse_spec(spec_text);
-  return find_entry<EffectEntry>("effect", effects(), spec).make(spec.settings, seed);
-}
 
 CommandColumns columns(std::size_t count, std::int64_t submit, std::int64_t primitive, std::int64_t pixel) {
   CommandColumns commands;
@@ -22,12 +16,20 @@ CommandColumns columns(std::size_t count, std::int64_t submit, std::int64_t prim
   return commands;
 }
 
+// Jitter looks at the number of the frame and at nothing else of what is drawn.
+void vary(Effect& jitter, std::int64_t frame, CommandColumns& commands) {
+  const Workload workload;
+  const Selection selection;
+  const Machine machine(MachineProfile{});
+  jitter.on_commands({.frame = frame, .workload = workload, .selection = selection, .machine = machine}, commands);
+}
+
 }  // namespace
 
 // The factor is exp(sigma*z - sigma^2/2); z is the stream's normal of (frame, command, stage).
 TEST_CASE("jitter multiplies each stage by its own log-normal factor, rounded to the picosecond") {
   CommandColumns commands = columns(3, 500, 1'000'000, 2'000'000);
-  make("jitter:sigma=0.5", 42)->on_commands(7, commands);
+  vary(*make_effect("jitter:sigma=0.5", 42), 7, commands);
   const RandomStream stream(42, "jitter");
   for (std::uint32_t i = 0; i < 3; ++i) {
     CHECK(commands.submit_ps[i] == 500);  // the CPU is not varied
@@ -39,7 +41,7 @@ TEST_CASE("jitter multiplies each stage by its own log-normal factor, rounded to
 TEST_CASE("jitter repeats for the same seed and frame, and differs for another of either") {
   const auto varied = [](std::uint64_t seed, std::int64_t frame) {
     CommandColumns commands = columns(4, 0, 1'000'000, 1'000'000);
-    make("jitter", seed)->on_commands(frame, commands);
+    vary(*make_effect("jitter", seed), frame, commands);
     return commands.primitive_ps;
   };
   CHECK(varied(1, 5) == varied(1, 5));
@@ -55,7 +57,7 @@ TEST_CASE("jitter has mean 1 and the stated deviation") {
     CAPTURE(text);
     constexpr double kLong = 1e12;  // so long that rounding does not matter
     CommandColumns commands = columns(kDraws, 0, static_cast<std::int64_t>(kLong), static_cast<std::int64_t>(kLong));
-    make(text, 3)->on_commands(0, commands);
+    vary(*make_effect(text, 3), 0, commands);
     for (const auto* column : {&commands.primitive_ps, &commands.pixel_ps}) {
       double sum = 0, log_sum = 0, log_squares = 0;
       for (const std::int64_t duration : *column) {
@@ -74,26 +76,26 @@ TEST_CASE("jitter has mean 1 and the stated deviation") {
 
 TEST_CASE("jitter leaves what takes no time at no time") {
   CommandColumns commands = columns(50, 0, 0, 0);
-  make("jitter:sigma=2", 9)->on_commands(0, commands);
+  vary(*make_effect("jitter:sigma=2", 9), 0, commands);
   CHECK(commands.primitive_ps == std::vector<std::int64_t>(50, 0));
   CHECK(commands.pixel_ps == std::vector<std::int64_t>(50, 0));
 }
 
 TEST_CASE("jitter is inert with sigma 0, and then changes no bit") {
-  CHECK_FALSE(make("jitter", 1)->inert({}));
-  const auto off = make("jitter:sigma=0", 1);
-  CHECK(off->inert({}));
+  CHECK_FALSE(make_effect("jitter", 1)->inert(EffectRun().context()));
+  const auto off = make_effect("jitter:sigma=0", 1);
+  CHECK(off->inert(EffectRun().context()));
   CommandColumns commands = columns(5, 1, 123'456'789, 987'654'321);
-  off->on_commands(2, commands);
+  vary(*off, 2, commands);
   CHECK(commands.primitive_ps == std::vector<std::int64_t>(5, 123'456'789));
   CHECK(commands.pixel_ps == std::vector<std::int64_t>(5, 987'654'321));
 }
 
 TEST_CASE("jitter refuses a stage longer than a day and a sigma out of range") {
   CommandColumns commands = columns(100, 0, kLongestDuration.count(), 0);  // some factor of 100 is above 1
-  CHECK_THROWS_AS(make("jitter", 1)->on_commands(0, commands), InternalError);
+  CHECK_THROWS_AS(vary(*make_effect("jitter", 1), 0, commands), InternalError);
   for (const char* wrong : {"jitter:sigma=-0.1", "jitter:sigma=2.1", "jitter:sigma=nan", "jitter:deviation=1"}) {
     CAPTURE(wrong);
-    CHECK_THROWS_AS(make(wrong, 1), InputError);
+    CHECK_THROWS_AS(make_effect(wrong, 1), InputError);
   }
 }
