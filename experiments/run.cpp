@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "policies/registry.h"
+#include "scenes/machine_file.h"
 #include "scenes/registry.h"
 #include "scenes/scene_workload.h"
 #include "sim/simulation.h"
@@ -26,6 +27,9 @@ struct Parts {
 
 MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
   MachineProfile profile = spec.machine ? load_machine(*spec.machine) : scene.machine;
+  if (spec.machine) {
+    if (const auto missing = missing_costs(scene, profile)) throw InputError(spec.machine->where, *missing);
+  }
   if (spec.overlap) profile.overlap = *spec.overlap;
   return profile;
 }
@@ -61,9 +65,21 @@ void make_effects(const RunSpec& spec, const Scene& scene, Parts& parts) {
   }
 }
 
+// A staged overlap has no closed form, and the closed forms have no stages.
+void check_fidelity(const RunSpec& spec, const MachineProfile& machine) {
+  const bool staged = machine.overlap.kind == OverlapKind::staged;
+  if (spec.engine.kind == EngineKind::automatic || (spec.engine.kind == EngineKind::closed_form) != staged) return;
+  throw InputError(spec.policy.where,
+                   fmt::format("--fidelity {} does not go with overlap '{}'; allowed: {}",
+                               staged ? "closed-form" : "recurrence or events", to_string(machine.overlap),
+                               staged ? "auto, recurrence, events, or an --overlap serial, paper2005, max-plus-s:S"
+                                      : "auto, closed-form, or an --overlap staged, staged:N"));
+}
+
 Parts make_parts(const RunSpec& spec, const Scene& scene) {
   Parts parts;
   parts.machine = std::make_unique<Machine>(resolve_machine(spec, scene));
+  check_fidelity(spec, parts.machine->profile());
   parts.policy = find_entry("policy", policies(), spec.policy).make(spec.policy.settings);
   const Spec planner =
       spec.planner ? *spec.planner : Spec{std::string(parts.policy->traits().planner), {}, spec.policy.where};
@@ -71,7 +87,6 @@ Parts make_parts(const RunSpec& spec, const Scene& scene) {
   parts.planner_name = to_string(planner);
   parts.estimator = find_entry("estimator", estimators(), spec.estimator).make(spec.estimator.settings);
   make_effects(spec, scene, parts);
-  make_engine(parts.machine->profile(), spec.engine);  // refuses what does not go together
   return parts;
 }
 

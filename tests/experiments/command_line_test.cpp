@@ -208,7 +208,11 @@ TEST_CASE("command line: wrong words are refused with exit code 2 and the legal 
 
 TEST_CASE("command line: an engine that does not fit the overlap is refused") {
   check_refused({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "recurrence"}, 2,
-                {"overlap"});
+                {"overlap 'serial'", "closed-form"});
+  check_refused({"run", "street", "--policy", "static", "--fidelity", "closed-form"}, 2,
+                {"overlap 'staged", "paper2005"});
+  CHECK(run_program({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "closed-form"})
+            .exit_code == 0);
 }
 
 TEST_CASE("command line: the last policy's mistake stops a comparison before its first run") {
