@@ -20,6 +20,10 @@ struct CheckOptions {
 };
 
 void print_differences(const GoldenCheck& table) {
+  if (table.is_new) {
+    fmt::print("{}: has no rows yet, {} are due\n", table.path, table.rows);
+    return;
+  }
   for (const Difference& d : table.differences) {
     fmt::print("{}: scene {}, policy {}, target {} s, {}: expected {}, found {}\n", table.path, d.scene, d.policy,
                d.target, d.column, d.expected, d.found);

@@ -163,7 +163,7 @@ GoldenCheck check_golden_table(const std::string& path, int threads, bool quiet)
   std::vector<RunResult> results = run_batch(plan_comparison(read_arguments(first, where), where), threads, quiet);
   Table found{csv_table_header(), {}};
   for (const RunResult& result : results) found.rows.push_back(csv_table_row(result));
-  return {path, found.rows.size(), compare_tables(expected, found),
+  return {path, found.rows.size(), expected.header.empty(), compare_tables(expected, found),
           first + '\n' + format_table(results, TableFormat::csv)};
 }
 

@@ -22,7 +22,8 @@ struct Difference {
 
 struct GoldenCheck {
   std::string path;
-  std::size_t rows = 0;
+  std::size_t rows = 0;  // of the rerun
+  bool is_new = false;   // the file has its first line only
   std::vector<Difference> differences;
   std::string rerun;  // the whole file as it would be written now
 };

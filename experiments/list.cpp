@@ -8,6 +8,7 @@
 
 #include "experiments/verbs.h"
 #include "policies/registry.h"
+#include "scenes/generator.h"
 #include "scenes/registry.h"
 #include "sim/effect.h"
 #include "sim/estimator.h"
@@ -67,6 +68,7 @@ const std::vector<Kind>& kinds() {
       {"estimators", [] { return registry_lines(estimators()); }},
       {"machines", machine_lines},
       {"planners", [] { return registry_lines(planners()); }},
+      {"generators", [] { return registry_lines(generators()); }},
   };
   return list;
 }

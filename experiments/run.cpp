@@ -91,6 +91,16 @@ RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts) 
   return result;
 }
 
+// Frame 0 fills the pipeline; it counts only while it is the only one.
+void note_slowest(const Simulation& simulation, const RunSpec& spec, RunResult& result) {
+  if (!spec.engine.critical_path) return;
+  const FrameRecord& record = result.records.back();
+  const FrameRecord& slowest = result.records[static_cast<std::size_t>(result.slowest_frame)];
+  if (record.frame > 1 && record.frame_time_ps <= slowest.frame_time_ps) return;
+  result.slowest_frame = record.frame;
+  result.slowest_path = simulation.critical_path();
+}
+
 }  // namespace
 
 void check_parts(const RunSpec& spec, const Scene& scene) { make_parts(spec, scene); }
@@ -137,6 +147,7 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
   result.records.reserve(static_cast<std::size_t>(frames));
   for (std::int64_t frame = 0; frame < frames; ++frame) {
     result.records.push_back(simulation.step());
+    note_slowest(simulation, spec, result);
     if (on_frame) on_frame();
   }
   result.summary = summarise(result.records, spec.target_s);

@@ -14,6 +14,7 @@
 #include "sim/frame_record.h"
 #include "sim/metrics.h"
 #include "sim/parameters.h"
+#include "sim/simulation.h"
 
 namespace framesim {
 
@@ -52,6 +53,8 @@ struct RunResult {
   double target_s = 0;
   std::uint64_t seed = 0;
   Summary summary;
+  std::int64_t slowest_frame = 0;           // frame 0, which fills the pipeline, left out
+  Simulation::CriticalPath slowest_path;    // ... and its critical path; empty unless the engine traces it
   std::vector<FrameRecord> records;
   std::uint64_t records_hash = 0;
 };

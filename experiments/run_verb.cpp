@@ -75,6 +75,23 @@ std::string critical_path(const RunResult& result) {
   return text;
 }
 
+// The slowest frame and what held it up, stage by stage.
+std::string slowest(const RunResult& r) {
+  if (r.records.empty()) return "NA";
+  const auto ms_of = [](Picoseconds t) { return to_seconds(t) * 1e3; };
+  const FrameRecord& record = r.records[static_cast<std::size_t>(r.slowest_frame)];
+  std::string text = fmt::format("frame {}, {:.3f} ms", record.frame, ms_of(Picoseconds(record.frame_time_ps)));
+  if (record.critical_cpu_ps + record.critical_present_ps + record.critical_primitive_ps == 0) return text;
+  std::string separator = ": ";
+  for (const auto& step : r.slowest_path.steps) {
+    if (step.time < Picoseconds(500'000)) continue;  // would print as 0.000
+    text += fmt::format("{}{} {:.3f}", separator, step.name, ms_of(step.time));
+    separator = " > ";
+  }
+  if (r.slowest_path.backlog.count() > 0) text += fmt::format("; behind earlier frames {:.3f}", ms_of(r.slowest_path.backlog));
+  return text;
+}
+
 std::string effects_text(const RunResult& r) {
   std::string text = r.effects.empty() ? "none" : fmt::format("{}", fmt::join(r.effects, ", "));
   for (const InertEffect& effect : r.inert_effects)
@@ -109,6 +126,7 @@ std::string describe_run(const RunResult& r) {
   line("decision",
        fmt::format("{:.1f} operations a frame; estimator error {:.2f} %", s.operations, s.estimator_error * 100));
   line("critical path", critical_path(r));
+  line("slowest", slowest(r));
   return text;
 }
 

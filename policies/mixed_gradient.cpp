@@ -11,8 +11,8 @@
 //                (gradient/curve_ascent.h). To keep steps few, the next waits until slope_d has fallen by the factor
 //                1 + slack; at most `rounds` of them, then only increments, and one last step with what is left.
 // Knee:          set-up that is not proportional to x makes cost against benefit non-concave: such a curve is raised smoothly
-//                to a point below its knee and from there by an increment to a point above (gradient/curve_variable.h). With knee 0
-//                that is the only way in; the paper leaves set-up out of the slope.
+//                up to a point below its knee; an increment that competes like all others takes it to a point above
+//                (gradient/curve_variable.h). With knee 0 that is the only way in; the paper leaves set-up out of the slope.
 // Splitting:     curves below a bundle share one variable while the loss is bounded by theta (gradient/node_sums.h). The variable's
 //                set-up is charged with the least knee of its curves, never too low. One whose jump does not fit any more
 //                is split into its children; a single curve jumps as far as the budget allows.

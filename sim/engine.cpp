@@ -8,25 +8,6 @@
 #include "sim/recurrence.h"
 
 namespace framesim {
-namespace {
-
-double serial_share(const Overlap& overlap) {
-  switch (overlap.kind) {
-    case OverlapKind::serial:
-      return 1;
-    case OverlapKind::paper2005:
-      return 1.0 / 3;
-    case OverlapKind::max_plus:
-      return overlap.serial_share;
-    case OverlapKind::staged:
-      break;
-  }
-  FRAMESIM_CHECK(overlap.kind != OverlapKind::staged, "the staged overlap has no closed form; name one");
-  return 0;
-}
-
-}  // namespace
-
 std::unique_ptr<Engine> make_engine(const MachineProfile& machine, const EngineOptions& options) {
   const bool staged = machine.overlap.kind == OverlapKind::staged;
   switch (options.kind) {

@@ -80,6 +80,17 @@ std::string to_string(const Overlap& overlap) {
   return "?";
 }
 
+double serial_share(const Overlap& overlap) {
+  switch (overlap.kind) {
+    case OverlapKind::serial: return 1;
+    case OverlapKind::paper2005: return 1.0 / 3;
+    case OverlapKind::max_plus: return overlap.serial_share;
+    case OverlapKind::staged: break;
+  }
+  FRAMESIM_CHECK(overlap.kind != OverlapKind::staged, "the staged overlap has no closed form; name one");
+  return 0;
+}
+
 void CommandColumns::clear() {
   submit_ps.clear();
   primitive_ps.clear();

@@ -38,6 +38,8 @@ struct Overlap {
 // "staged", "staged:2" (frames in flight), "serial", "paper2005", "max-plus-s:0.2". Throws InputError.
 Overlap parse_overlap(std::string_view text, const InputLocation& where = {"command line"});
 std::string to_string(const Overlap& overlap);
+// The s of the closed form T = max + s*min; throws InternalError for the staged overlap, which has none.
+double serial_share(const Overlap& overlap);
 
 struct MachineProfile {
   std::string name;

@@ -162,4 +162,9 @@ void unknown_parameter(const Setting& setting, const std::vector<std::string_vie
 }
 
 }  // namespace detail
+const ParameterTable<NoParameters>& no_parameters() {
+  static const ParameterTable<NoParameters> kTable{{}};
+  return kTable;
+}
+
 }  // namespace framesim

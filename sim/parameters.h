@@ -148,4 +148,8 @@ class ParameterTable {
 #pragma GCC diagnostic pop
 #endif
 
+// For plug-ins without parameters: refuses every setting.
+struct NoParameters {};
+const ParameterTable<NoParameters>& no_parameters();
+
 }  // namespace framesim

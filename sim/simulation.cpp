@@ -75,15 +75,15 @@ Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& con
 
 std::int64_t Simulation::frames() const { return parts_.scene.scene().frames; }
 
-// One frame, in order.
+// One frame: what can be seen, then the stages of the graph in topological order, then what is kept and told of it.
 const FrameRecord& Simulation::step() {
   FRAMESIM_CHECK(next_frame_ < frames(), fmt::format("the scene has {} frames", frames()));
   record_ = {};
   record_.frame = next_frame_;
   see();
-  run_logic();
-  decide(plan_budget());
-  draw();
+  for (const int node : stages_.order()) {
+    if (const auto stage = stages_.stage(node)) run(*stage);  // tasks run beside each other: StageGraph::task_time()
+  }
   record_quality();
   record_switches();
   tell();
@@ -91,7 +91,7 @@ const FrameRecord& Simulation::step() {
   return record_;
 }
 
-// Visibility: what can be seen, what it would cost by the estimator, what it is worth.
+// The input of the frame: what can be seen, what it would cost by the estimator, what it is worth.
 void Simulation::see() {
   const VisibilityCounts counts = parts_.scene.fill(record_.frame, traits_.request, workload_);
   parts_.estimator.price(workload_);
@@ -99,8 +99,22 @@ void Simulation::see() {
   for (Effect* effect : effects_.workload) effect->on_workload(record_.frame, workload_);
   record_.visibility_tests = counts.tests;
   record_.visible = counts.visible;
-  record_.visibility_ps =
-      ceil_picoseconds(static_cast<double>(counts.tests) * parts_.machine.profile().visibility_test_s).count();
+}
+
+void Simulation::run(Stage stage) {
+  switch (stage) {
+    case Stage::logic: return run_logic();
+    case Stage::visibility:
+      record_.visibility_ps = ceil_picoseconds(static_cast<double>(record_.visibility_tests) *
+                                               parts_.machine.profile().visibility_test_s)
+                                  .count();
+      return;
+    case Stage::decide: return decide();
+    case Stage::submit: return submit();
+    case Stage::primitive:
+    case Stage::pixel: return;  // priced with their commands, and timed together with them by the engine
+    case Stage::present: return show();
+  }
 }
 
 void Simulation::run_logic() {
@@ -124,7 +138,8 @@ double Simulation::plan_budget() const {
        .overlap = machine.overlap});
 }
 
-void Simulation::decide(double budget_s) {
+void Simulation::decide() {
+  const double budget_s = plan_budget();
   record_.budget_s = budget_s;
   selection_.reset(workload_.size());
   parts_.policy.select(
@@ -139,14 +154,18 @@ void Simulation::decide(double budget_s) {
   record_.decide_ps = ceil_picoseconds(last_decide_s_).count();
 }
 
-// Submission and the two GPU stages, then the present.
-void Simulation::draw() {
-  const MachineProfile& machine = parts_.machine.profile();
+// The commands of what was decided, with what each will really take.
+void Simulation::submit() {
   commands_.clear();
   parts_.machine.command(workload_, selection_, commands_);
   const DrawnFrame drawn{
       .frame = record_.frame, .workload = workload_, .selection = selection_, .machine = parts_.machine};
   for (Effect* effect : effects_.commands) effect->on_commands(drawn, commands_);
+}
+
+// The engine runs the commands through both GPU stages to the display.
+void Simulation::show() {
+  const MachineProfile& machine = parts_.machine.profile();
   const Picoseconds cpu_before = settings_.logic + Picoseconds(record_.visibility_ps) + Picoseconds(record_.decide_ps) +
                                  ceil_picoseconds(machine.frame_setup_s);
   const FrameTimes times = engine_->run({.cpu_before = cpu_before,
@@ -168,6 +187,32 @@ void Simulation::draw() {
   record_.critical_backlog_ps = critical(Critical::backlog);
   record_.critical_present_ps = critical(Critical::present);
   record_.fidelity = fidelity_of(engine_->kind());
+}
+
+Simulation::CriticalPath Simulation::critical_path() const {
+  // Where the trace ends behind an earlier frame's commands, the CPU's own work was hidden there and held nothing up.
+  const bool cpu_bound = record_.critical_cpu_ps > 0;
+  std::vector<Picoseconds> times(static_cast<std::size_t>(stages_.size()), Picoseconds(0));
+  if (cpu_bound) times = stages_.declared_times();
+  const auto set = [&](Stage stage, std::int64_t time_ps) {
+    times[static_cast<std::size_t>(stages_.node(stage))] = Picoseconds(time_ps);
+  };
+  if (cpu_bound) {
+    set(Stage::logic, record_.logic_ps - stages_.task_time().count());
+    set(Stage::visibility, record_.visibility_ps);
+    set(Stage::decide, record_.decide_ps);
+  }
+  const Picoseconds setup = cpu_bound ? ceil_picoseconds(parts_.machine.profile().frame_setup_s) : Picoseconds(0);
+  set(Stage::submit, setup.count() + record_.critical_submit_ps);
+  set(Stage::primitive, record_.critical_primitive_ps);
+  set(Stage::pixel, record_.critical_pixel_ps);
+  set(Stage::present, record_.critical_present_ps);
+  CriticalPath path;
+  for (const int node : stages_.critical_path(times).nodes) {
+    path.steps.push_back({stages_.name(node), times[static_cast<std::size_t>(node)]});
+  }
+  path.backlog = Picoseconds(record_.critical_backlog_ps);
+  return path;
 }
 
 // Benefit, and how detailed the picture is. In a hierarchy a drawn node stands for its subtree.

@@ -49,13 +49,28 @@ class Simulation {
   const Selection& selection() const { return selection_; }
   const StageGraph& stages() const { return stages_; }
 
+  // The last frame's critical path: the longest path through the stage graph, each stage with the time that it held the frame
+  // up. `backlog` is what the frame waited behind earlier ones; with it, and where the engine traces (EngineOptions), the
+  // durations on the path sum to the frame's latency. Allocates.
+  struct CriticalPath {
+    struct Step {
+      std::string name;
+      Picoseconds time{0};
+    };
+    std::vector<Step> steps;
+    Picoseconds backlog{0};
+  };
+  CriticalPath critical_path() const;
+
  private:
-  // The stages of step(), in its order.
+  // In the order of step().
   void see();
+  void run(Stage stage);
   void run_logic();
+  void decide();
   double plan_budget() const;
-  void decide(double budget_s);
-  void draw();
+  void submit();
+  void show();
   void record_quality();
   void record_switches();
   void tell();

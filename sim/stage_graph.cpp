@@ -116,6 +116,11 @@ StageGraph::StageGraph(const std::vector<LogicTask>& tasks) {
 
 int StageGraph::node(Stage stage) const { return size() - static_cast<int>(kStageCount) + static_cast<int>(stage); }
 
+std::optional<Stage> StageGraph::stage(int node) const {
+  const int first = size() - static_cast<int>(kStageCount);
+  return node < first ? std::nullopt : std::optional(static_cast<Stage>(node - first));
+}
+
 // One pass in topological order (longest path of an acyclic graph, O(nodes + edges)). All lead to the last stage.
 StageGraph::Path StageGraph::critical_path(const std::vector<Picoseconds>& durations) const {
   FRAMESIM_CHECK(durations.size() == names_.size(),

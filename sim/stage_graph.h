@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,8 @@ class StageGraph {
   const std::vector<int>& order() const { return order_; }
   const std::string& name(int node) const { return names_[static_cast<std::size_t>(node)]; }
   int node(Stage stage) const;
+  // The stage that `node` is; nothing for a task.
+  std::optional<Stage> stage(int node) const;
   int size() const { return static_cast<int>(names_.size()); }
 
   struct Path {
@@ -56,6 +59,8 @@ class StageGraph {
   Path critical_path(const std::vector<Picoseconds>& durations) const;
   // Length of the longest path through the declared tasks alone; 0 without tasks.
   Picoseconds task_time() const { return task_time_; }
+  // What each node takes by declaration: tasks their time, stages 0.
+  const std::vector<Picoseconds>& declared_times() const { return task_durations_; }
 
  private:
   std::vector<std::string> names_;

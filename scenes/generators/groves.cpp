@@ -209,6 +209,9 @@ class Groves final : public Generator {
     type.continuous = true;
     type.shape = CurveShape::square_root;
     type.draws_scale_below_knee = true;
+    // Down to a single splat: a policy that takes discrete levels and may not omit anything has a coarsest level as cheap
+    // as the curve's, instead of a floor that no budget covers.
+    type.stand_in_levels = std::min(32, 1 + static_cast<int>(std::ceil(std::log2(std::max(1.0, facts.polygons)))));
     type.benefit = BenefitModel::zach_trees;
     type.radius_m = p_.tree_height * std::sqrt(trees);
     type.area_m2 = p_.crown * p_.tree_height * trees;

@@ -21,24 +21,6 @@ namespace framesim {
 
 namespace {
 
-struct NoParameters {};
-
-const ParameterTable<NoParameters>& parameters() {
-  static const ParameterTable<NoParameters> kTable{{}};
-  return kTable;
-}
-
-double serial_share(const Overlap& overlap) {
-  switch (overlap.kind) {
-    case OverlapKind::serial:
-      return 1;
-    case OverlapKind::paper2005:
-      return 1.0 / 3;
-    default:
-      return overlap.serial_share;
-  }
-}
-
 // The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]; s = 0 never
 // divides: then t_l < target makes the first form apply.
 double closed_form_inverse(double logic_s, double target_s, double share) {
@@ -69,9 +51,9 @@ class InversePlanner final : public Planner {
 PlannerEntry inverse_planner() {
   return {.name = "inverse",
           .summary = "the drawing time at which the machine's overlap of CPU and GPU gives exactly the target",
-          .parameters = parameters().describe(),
+          .parameters = no_parameters().describe(),
           .make = [](const Settings& settings) -> std::unique_ptr<Planner> {
-            parameters().read(settings);
+            no_parameters().read(settings);
             return std::make_unique<InversePlanner>();
           }};
 }

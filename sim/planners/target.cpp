@@ -7,13 +7,6 @@ namespace framesim {
 
 namespace {
 
-struct NoParameters {};
-
-const ParameterTable<NoParameters>& parameters() {
-  static const ParameterTable<NoParameters> kTable{{}};
-  return kTable;
-}
-
 class TargetPlanner final : public Planner {
  public:
   double budget_s(const PlanInput& input) const override { return input.target_s; }
@@ -24,9 +17,9 @@ class TargetPlanner final : public Planner {
 PlannerEntry target_planner() {
   return {.name = "target",
           .summary = "the whole target for drawing, as on Funkhouser and Sequin's second processor",
-          .parameters = parameters().describe(),
+          .parameters = no_parameters().describe(),
           .make = [](const Settings& settings) -> std::unique_ptr<Planner> {
-            parameters().read(settings);
+            no_parameters().read(settings);
             return std::make_unique<TargetPlanner>();
           }};
 }

@@ -11,16 +11,9 @@ using framesim::test::add_command;
 using framesim::test::Pipeline;
 using framesim::test::PipelineFrame;
 using framesim::test::random_pipeline;
+using framesim::test::staged;
 
 namespace {
-
-MachineProfile staged(int primitive_fifo, int pixel_fifo, int frames_in_flight) {
-  MachineProfile machine;
-  machine.primitive_fifo = primitive_fifo;
-  machine.pixel_fifo = pixel_fifo;
-  machine.overlap.frames_in_flight = frames_in_flight;
-  return machine;
-}
 
 PipelineFrame make_frame(std::int64_t cpu_before, std::int64_t swap,
                          const std::vector<std::array<std::int64_t, 3>>& commands) {

@@ -16,17 +16,10 @@ using framesim::test::add_command;
 using framesim::test::Pipeline;
 using framesim::test::PipelineFrame;
 using framesim::test::random_pipeline;
+using framesim::test::staged;
 using framesim::test::SplitMix;
 
 namespace {
-
-MachineProfile staged(int primitive_fifo, int pixel_fifo, int frames_in_flight) {
-  MachineProfile machine;
-  machine.primitive_fifo = primitive_fifo;
-  machine.pixel_fifo = pixel_fifo;
-  machine.overlap.frames_in_flight = frames_in_flight;
-  return machine;
-}
 
 // All exact times of a frame, in the order of FrameTimes.
 std::vector<std::int64_t> fields(const FrameTimes& t) {

@@ -8,6 +8,15 @@
 
 namespace framesim::test {
 
+// A machine with these FIFO capacities and frames in flight, and no costs.
+inline MachineProfile staged(int primitive_fifo, int pixel_fifo, int frames_in_flight) {
+  MachineProfile machine;
+  machine.primitive_fifo = primitive_fifo;
+  machine.pixel_fifo = pixel_fifo;
+  machine.overlap.frames_in_flight = frames_in_flight;
+  return machine;
+}
+
 // SplitMix64 (Steele, Lea, Flood 2014): small, and the same on every platform.
 class SplitMix {
  public:

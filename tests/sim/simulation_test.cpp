@@ -130,6 +130,23 @@ TEST_CASE("one frame end to end, every number by hand") {
   CHECK(r.switches == 0);
 }
 
+TEST_CASE("the critical path of a frame: its stages in order, with the time each held it up, sum to the latency") {
+  Run run;
+  run.simulation.step();
+  const Simulation::CriticalPath path = run.simulation.critical_path();
+  // As above: logic 560, visibility 3, decision 14, submission 100 of setup + 10, 1100, 20, 20.
+  const std::vector<std::pair<std::string, std::int64_t>> expected{{"logic", 560},      {"visibility", 3}, {"decide", 14},
+                                                                  {"submit", 110},     {"primitive", 1100}, {"pixel", 20},
+                                                                  {"present", 20}};
+  REQUIRE(path.steps.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(i);
+    CHECK(path.steps[i].name == expected[i].first);
+    CHECK(path.steps[i].time.count() == expected[i].second * us);
+  }
+  CHECK(path.backlog.count() == 0);
+}
+
 TEST_CASE("the second frame knows the first: decision time, switches, what the policy is told") {
   Run run;
   run.simulation.step();
