@@ -8,13 +8,6 @@
 
 namespace framesim {
 
-// Neumaier 1974, algorithm IV: what the larger of the two terms pushes out of the sum is collected apart.
-void CompensatedSum::add(double x) {
-  const double sum = sum_ + x;
-  correction_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
-  sum_ = sum;
-}
-
 // Welford 1962.
 void Moments::add(double x) {
   ++count_;

@@ -3,6 +3,7 @@
 // Never E[x^2] - mean^2: on 600 frame times near 16.67 ms with 50 ns deviation that is wrong by 4e11 ulp.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,7 +13,12 @@ namespace framesim {
 // Sum with Neumaier's compensation: error independent of the number of terms (2 ulp of the sum plus n^2 eps^2 of |terms|).
 class CompensatedSum {
  public:
-  void add(double x);
+  // Neumaier 1974, algorithm IV: what the larger of the two terms pushes out of the sum is collected apart.
+  void add(double x) {
+    const double sum = sum_ + x;
+    correction_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+    sum_ = sum;
+  }
   double value() const { return sum_ + correction_; }
 
  private:

@@ -54,7 +54,7 @@ sanitized_tests() {
 }
 
 packages=$BUILD_PACKAGES
-[ "$quick" = yes ] || packages="$packages clang"
+[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev"
 # shellcheck disable=SC2086
 stage "packages" install_packages $packages
 [ "$failed" -eq 0 ] || finish
@@ -75,7 +75,8 @@ stage "build with clang++" build_framesim build-clang framesim -DCMAKE_CXX_COMPI
 stage "default comparison, clang++" table build-clang/framesim "$out/clang.csv"
 stage "g++ and clang++: same bytes" same "$out/jobs-2.csv" "$out/clang.csv"
 
-stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON
+stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON \
+  -DFRAMESIM_BENCHMARKS=OFF
 stage "tests with sanitizers" sanitized_tests
 stage "small comparison, -O2" small build/framesim "$out/small-O2.csv"
 stage "small comparison, -O0 with sanitizers" small build-sanitize/framesim "$out/small-O0.csv"
