@@ -8,6 +8,13 @@
 #include "sim/recurrence.h"
 
 namespace framesim {
+
+EngineKind exact_engine(const MachineProfile& machine) {
+  if (machine.overlap.kind != OverlapKind::staged) return EngineKind::closed_form;
+  const bool shared = machine.bus.chunk.count() > 0 || machine.client.period.count() > 0;
+  return shared ? EngineKind::events : EngineKind::recurrence;
+}
+
 std::unique_ptr<Engine> make_engine(const MachineProfile& machine, const EngineOptions& options) {
   const bool staged = machine.overlap.kind == OverlapKind::staged;
   switch (options.kind) {

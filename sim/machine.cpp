@@ -96,6 +96,9 @@ void CommandColumns::clear() {
   primitive_ps.clear();
   pixel_ps.clear();
   item.clear();
+  upload_ps.clear();
+  fetch_ps.clear();
+  upload_bytes = 0;
 }
 
 Machine::Machine(MachineProfile profile) : profile_(std::move(profile)) {

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/catalogue.h"
 #include "sim/check.h"
+#include "sim/random_stream.h"
 #include "sim/units.h"
 #include "sim/workload.h"
 
@@ -41,6 +43,26 @@ std::string to_string(const Overlap& overlap);
 // The s of the closed form T = max + s*min; throws InternalError for the staged overlap, which has none.
 double serial_share(const Overlap& overlap);
 
+// A bus that uploads and the draws' own fetches share, one transfer at a time (effect streaming). Who gets it next depends
+// on when each asked, over all streams: only the event engine is exact.
+enum class Arbitration : std::uint8_t { in_order, draws_first, uploads_first };
+inline constexpr std::array<std::string_view, 3> kArbitrationNames = {"in-order", "draws-first", "uploads-first"};
+struct Bus {
+  Picoseconds chunk{0};  // the longest grant; a longer upload asks again. 0 = no such bus
+  Arbitration arbitration = Arbitration::draws_first;
+};
+
+// Another client of the GPU, such as a compositor (effect preemption): a job of `duration` arrives every `period` and
+// takes both stages, with `switch_time` before it and again after it. Only the event engine simulates it.
+struct GpuClient {
+  Picoseconds period{0};  // between arrivals, or their mean; 0 = no client
+  Picoseconds first{0};   // when the first job arrives; without `arrivals` only
+  Picoseconds duration{0};
+  Picoseconds switch_time{0};
+  bool between_commands = false;  // true: waits until both stages have finished their commands; false: interrupts them
+  std::optional<RandomStream> arrivals{};  // given: Poisson; the gap before job j is drawn at (0, j), lane 0
+};
+
 struct MachineProfile {
   std::string name;
   std::string source;  // where the numbers come from, and what is assumed
@@ -55,12 +77,19 @@ struct MachineProfile {
   int primitive_fifo = 64;       // commands that wait before the per-primitive stage, >= 1 (B1)
   int pixel_fifo = 16;           // ... and before the per-pixel stage, >= 1 (B2)
   Overlap overlap{};
+  Bus bus{};           // set by effects, not by profiles
+  GpuClient client{};  // ... likewise
 };
 
 // Actual durations of a frame's commands, in draw order. Row 0 is the clear.
 struct CommandColumns {
   std::vector<std::int64_t> submit_ps, primitive_ps, pixel_ps;
   std::vector<std::uint32_t> item;  // index into the workload; kClearCommand for the clear
+  // With a bus only (MachineProfile::bus), else empty. `upload_ps`: transfers that must have ended before the command's
+  // per-primitive stage begins; they ask for the bus when the command is submitted. `fetch_ps`: first part of primitive_ps,
+  // which needs the bus too; at most primitive_ps, and at most one chunk.
+  std::vector<std::int64_t> upload_ps, fetch_ps;
+  std::int64_t upload_bytes = 0;  // of this frame
   void clear();
   std::size_t size() const { return submit_ps.size(); }
 };

@@ -52,10 +52,20 @@ std::int64_t fidelity_of(EngineKind kind) {
   fail_check(__FILE__, __LINE__, "an engine is of one kind", fmt::format("kind {}", static_cast<int>(kind)));
 }
 
+// An engine without a bus sees an upload as a longer per-primitive stage (engine.h).
+void fold_uploads(CommandColumns& commands) {
+  for (std::size_t i = 0; i < commands.upload_ps.size(); ++i) commands.primitive_ps[i] += commands.upload_ps[i];
+}
+
 }  // namespace
 
 Simulation::Simulation(const SimulationParts& parts, const SimulationConfig& config)
-    : parts_(parts), config_(config), traits_(parts.policy.traits()), stages_(parts.logic.tasks), effects_(parts.effects) {
+    : parts_(parts),
+      config_(config),
+      clock_(config.profile),
+      traits_(parts.policy.traits()),
+      stages_(parts.logic.tasks),
+      effects_(parts.effects) {
   FRAMESIM_CHECK(std::isfinite(config_.target_s) && config_.target_s > 0, fmt::format("target {} s", config_.target_s));
   const SceneFacts& scene = parts_.scene.scene();
   engine_ = make_engine(parts_.machine.profile(), config_.engine);
@@ -78,6 +88,7 @@ std::int64_t Simulation::frames() const { return parts_.scene.scene().frames; }
 // One frame: what can be seen, then the stages of the graph in topological order, then what is kept and told of it.
 const FrameRecord& Simulation::step() {
   FRAMESIM_CHECK(next_frame_ < frames(), fmt::format("the scene has {} frames", frames()));
+  clock_.begin();
   record_ = {};
   record_.frame = next_frame_;
   see();
@@ -86,17 +97,24 @@ const FrameRecord& Simulation::step() {
   }
   record_quality();
   record_switches();
+  clock_.end_of(StepPart::record);
   tell();
+  clock_.end_of(StepPart::tell);
   ++next_frame_;
+  clock_.end();
   return record_;
 }
 
 // The input of the frame: what can be seen, what it would cost by the estimator, what it is worth.
 void Simulation::see() {
   const VisibilityCounts counts = parts_.scene.fill(record_.frame, traits_.request, workload_);
+  clock_.end_of(StepPart::see);
   parts_.estimator.price(workload_);
+  clock_.end_of(StepPart::estimate);
   score(workload_);
+  clock_.end_of(StepPart::benefit);
   for (Effect* effect : effects_.workload) effect->on_workload(record_.frame, workload_);
+  clock_.end_of(StepPart::effects);
   record_.visibility_tests = counts.tests;
   record_.visible = counts.visible;
 }
@@ -124,6 +142,7 @@ void Simulation::run_logic() {
       ceil_picoseconds(logic.base_s + logic.per_item_s * static_cast<double>(record_.visible)) + stages_.task_time();
   for (Effect* effect : effects_.frame) effect->on_frame(settings_);
   record_.logic_ps = settings_.logic.count();
+  clock_.end_of(StepPart::logic);
 }
 
 double Simulation::plan_budget() const {
@@ -152,15 +171,20 @@ void Simulation::decide() {
   record_.operations = selection_.operations;
   last_decide_s_ = static_cast<double>(selection_.operations) * parts_.machine.profile().operation_s;
   record_.decide_ps = ceil_picoseconds(last_decide_s_).count();
+  clock_.end_of(StepPart::decide);
 }
 
 // The commands of what was decided, with what each will really take.
 void Simulation::submit() {
   commands_.clear();
   parts_.machine.command(workload_, selection_, commands_);
+  clock_.end_of(StepPart::commands);
   const DrawnFrame drawn{
       .frame = record_.frame, .workload = workload_, .selection = selection_, .machine = parts_.machine};
   for (Effect* effect : effects_.commands) effect->on_commands(drawn, commands_);
+  record_.upload_bytes = commands_.upload_bytes;
+  if (engine_->kind() != EngineKind::events) fold_uploads(commands_);
+  clock_.end_of(StepPart::effects);
 }
 
 // The engine runs the commands through both GPU stages to the display.
@@ -186,7 +210,10 @@ void Simulation::show() {
   record_.critical_pixel_ps = critical(Critical::pixel);
   record_.critical_backlog_ps = critical(Critical::backlog);
   record_.critical_present_ps = critical(Critical::present);
+  record_.bus_wait_ps = times.bus_wait.count();
+  record_.preempted_ps = times.preempted.count();
   record_.fidelity = fidelity_of(engine_->kind());
+  clock_.end_of(StepPart::engine);
 }
 
 Simulation::CriticalPath Simulation::critical_path() const {

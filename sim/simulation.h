@@ -12,6 +12,7 @@
 #include "sim/planner.h"
 #include "sim/policy.h"
 #include "sim/stage_graph.h"
+#include "sim/step_profile.h"
 #include "sim/workload.h"
 
 namespace framesim {
@@ -20,6 +21,7 @@ struct SimulationConfig {
   double target_s = 0.025;
   EngineOptions engine;
   bool check_selections = false;  // find_fault() on every frame; a fault is an InternalError
+  StepProfile* profile = nullptr;  // where given, the host's time in each part of a step is added up there
 };
 
 // The parts of a run. All must outlive the simulation.
@@ -77,6 +79,7 @@ class Simulation {
 
   SimulationParts parts_;
   SimulationConfig config_;
+  StepClock clock_;
   PolicyTraits traits_;
   StageGraph stages_;
   ActiveEffects effects_;
