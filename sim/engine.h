@@ -54,6 +54,7 @@ struct FrameTimes {
   Picoseconds latency{0};     // shown - cpu_start
   Picoseconds bus_wait{0};    // per-primitive stage: waited for uploads and for the bus, summed over the frame's commands
   Picoseconds preempted{0};   // GPU: held by another client, switches included, since the frame before was drawn
+  std::int64_t steps = 0;     // counted work: formulas (closed form), equations (recurrence) or events taken
   CriticalTimes critical{};   // all 0 unless asked for
 };
 

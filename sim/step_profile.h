@@ -10,10 +10,10 @@
 namespace framesim {
 
 // The parts of Simulation::step, in its order.
-enum class StepPart : std::uint8_t { see, estimate, benefit, effects, logic, decide, commands, engine, record, tell };
-inline constexpr std::size_t kStepParts = 10;
+enum class StepPart : std::uint8_t { see, estimate, benefit, effects, logic, decide, bound, commands, engine, record, tell };
+inline constexpr std::size_t kStepParts = 11;
 inline constexpr std::array<std::string_view, kStepParts> kStepPartNames = {
-    "visibility and workload", "cost estimate", "benefit", "effects", "logic", "decision", "commands", "engine", "records", "feedback"};
+    "visibility and workload", "cost estimate", "benefit", "effects", "logic", "decision", "bound", "commands", "engine", "records", "feedback"};
 
 struct StepProfile {
   std::int64_t frames = 0;
