@@ -116,7 +116,8 @@ class CertifiedPolicy : public Policy {
 
   static bool is_flat(const Workload& workload) {
     if (workload.hierarchical()) return false;
-    return std::all_of(workload.kind.begin(), workload.kind.end(), [](ItemKind kind) { return kind == ItemKind::levels; });
+    return std::all_of(workload.kind.begin(), workload.kind.end(),
+                       [](ItemKind kind) { return kind == ItemKind::levels; });
   }
 
   LevelColumns columns(const Workload& workload, bool may_omit) const {
@@ -158,12 +159,15 @@ class CertifiedPolicy : public Policy {
   }
 
   void select_tree(const Workload& workload, double budget_s, Selection& selection) {
-    const std::span<const std::uint8_t> kept = keeps() ? std::span<const std::uint8_t>(kept_) : std::span<const std::uint8_t>();
+    const std::span<const std::uint8_t> kept =
+        keeps() ? std::span<const std::uint8_t>(kept_) : std::span<const std::uint8_t>();
     TreePlan plan{.feasible = false};
-    if (!parameters_.none) plan = tree_.solve(workload, budget_s, {.kept = kept, .bonus = parameters_.hysteresis}, selection);
+    if (!parameters_.none)
+      plan = tree_.solve(workload, budget_s, {.kept = kept, .bonus = parameters_.hysteresis}, selection);
     if (!plan.feasible) {
       const std::int64_t tried = plan.operations;
-      plan = tree_bound_.solve(workload, budget_s, {.may_omit = true, .kept = kept, .bonus = parameters_.hysteresis}, selection);
+      plan = tree_bound_.solve(workload, budget_s, {.may_omit = true, .kept = kept, .bonus = parameters_.hysteresis},
+                               selection);
       plan.operations += tried;
     }
     if (!plan.tight) {
@@ -201,12 +205,14 @@ class CertifiedPolicy : public Policy {
 
   const CertifiedParameters parameters_;
   Headroom headroom_;
-  FlatSearch flat_{static_cast<std::size_t>(parameters_.states)}, flat_bound_{static_cast<std::size_t>(parameters_.states)};
-  TreeSearch tree_{static_cast<std::size_t>(parameters_.states)}, tree_bound_{static_cast<std::size_t>(parameters_.states)};
-  double unspent_s_ = 0;  // of the planner's budget, in this frame
-  std::vector<std::uint8_t> last_level_;   // an instance: its level in the last frame it was visible
-  std::vector<std::int64_t> last_frame_;   // ... and that frame
-  std::vector<std::uint8_t> kept_;         // an item of this frame: its level in the last, or kNoLevel
+  FlatSearch flat_{static_cast<std::size_t>(parameters_.states)},
+      flat_bound_{static_cast<std::size_t>(parameters_.states)};
+  TreeSearch tree_{static_cast<std::size_t>(parameters_.states)},
+      tree_bound_{static_cast<std::size_t>(parameters_.states)};
+  double unspent_s_ = 0;                  // of the planner's budget, in this frame
+  std::vector<std::uint8_t> last_level_;  // an instance: its level in the last frame it was visible
+  std::vector<std::int64_t> last_frame_;  // ... and that frame
+  std::vector<std::uint8_t> kept_;        // an item of this frame: its level in the last, or kNoLevel
   std::vector<std::int16_t> scratch_;
   Selection proof_;
 };

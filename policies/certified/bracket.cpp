@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/statistics.h"
+
 namespace framesim::certified {
 namespace {
 
@@ -10,7 +12,7 @@ namespace {
 constexpr std::size_t kFewOpen = 32;
 constexpr double kManyOpenShare = 0.004;
 
-constexpr double kWidest = 14;                // e^14 to either side: the whole of any list of few items
+constexpr double kWidest = 14;  // e^14 to either side: the whole of any list of few items
 constexpr double kNarrowest = 1e-7;
 constexpr double kOpenOften = 0.4;            // of all items, an e-fold of the multiplier opens about this share
 constexpr double kLargestMultiplier = 1e200;  // times a cost stays finite
@@ -19,20 +21,18 @@ constexpr double kLargestMultiplier = 1e200;  // times a cost stays finite
 constexpr std::size_t kPeek = 4096;
 constexpr std::size_t kSampleShare = 16;
 constexpr double kSampleError = 2.5;  // of the multiplier, times the root of the sample's size
-constexpr double kCut = 0.15;  // a change of the cost at last frame's multiplier by this share is a cut
+constexpr double kCut = 0.15;         // a change of the cost at last frame's multiplier by this share is a cut
 
 std::size_t stride_for(std::size_t items, std::size_t wanted) { return std::max<std::size_t>(1, items / wanted); }
 
 double cheapest_s(const LevelColumns& columns) {
-  double sum = 0, lost = 0;  // Kahan: the answer decides what "fits" means
+  CompensatedSum sum;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns.levels(i) == 0) continue;
     const auto first = columns.cost_s.begin() + columns.begin[i], last = columns.cost_s.begin() + columns.begin[i + 1];
-    const double term = *std::min_element(first, last) - lost, to = sum + term;
-    lost = (to - sum) - term;
-    sum = to;
+    sum.add(*std::min_element(first, last));
   }
-  return sum;
+  return sum.value();
 }
 
 }  // namespace
@@ -96,11 +96,13 @@ Bracket BracketSearch::search_afresh(Found& found) const {
   const std::size_t stride = stride_for(items, kPeek), finer = stride_for(items, std::max(kPeek, items / kSampleShare));
   const PassResult best = pass_over_sample(*columns_, {0, 0}, stride);
   found.looked_at += static_cast<std::int64_t>(best.looked_at);
-  const double cost_s = best.low.cost_s * static_cast<double>(items) / static_cast<double>(std::max<std::size_t>(best.looked_at, 1));
+  const double cost_s =
+      best.low.cost_s * static_cast<double>(items) / static_cast<double>(std::max<std::size_t>(best.looked_at, 1));
   if (cost_s <= budget_s_ * (stride > 1 ? 1 - kCut : 1)) return {0, 0};
   const double scale = best.low.benefit / best.low.cost_s;
   if (!(scale > 0)) return {0, 1};
-  const double narrow = std::clamp(2.5 * static_cast<double>(kFewOpen) / kOpenOften / static_cast<double>(items), 1e-4, kWidest);
+  const double narrow =
+      std::clamp(2.5 * static_cast<double>(kFewOpen) / kOpenOften / static_cast<double>(items), 1e-4, kWidest);
   const Bracket bracket = search_sample(found, stride, {scale / 2, scale * 2}, narrow);
   const bool refines = finer < stride && bracket.low > 0 && bracket.high < kLargestMultiplier;
   return refines ? search_sample(found, finer, bracket, narrow) : bracket;
@@ -132,10 +134,14 @@ BracketSearch::Found BracketSearch::find(const LevelColumns& columns, double bud
       found.feasible = may_fit;
       if (!may_fit) return found;
     }
+    if (above && bracket.high >= kLargestMultiplier) {
+      found.feasible = false;
+      return found;
+    }
     const double ends = bracket.low > 0 ? std::log(bracket.high / bracket.low) : 1;
     const double falls = std::log(std::max(pass.low.cost_s / std::max(pass.high.cost_s, 1e-300), 1.0));
-    const double off = std::fabs(std::log(std::max(above ? pass.high.cost_s : pass.low.cost_s, 1e-300) /
-                                          std::max(budget_s, 1e-300)));
+    const double off =
+        std::fabs(std::log(std::max(above ? pass.high.cost_s : pass.low.cost_s, 1e-300) / std::max(budget_s, 1e-300)));
     const double guess = falls > 0 ? 2 * off * ends / falls : 1;
     const double step = std::clamp(guess, std::max(1e-3, ends), 8.0) * growth * growth;
     if (above) {

@@ -1,6 +1,7 @@
 #include "policies/certified/core.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace framesim::certified {
 
@@ -32,15 +33,28 @@ void Core::extend(const Move* first, const Move* last, double room_s, double mul
   }
 }
 
-// Drops states that cannot become the best, and of the others those that have lost most.
-void Core::prune(std::size_t most_states) {
-  const auto loss = [&](std::int32_t s) { return states_[static_cast<std::size_t>(s)].loss; };
-  std::erase_if(front_, [&](std::int32_t s) { return !(loss(s) < best_); });
+// Drops states that cannot become the best: those that have lost too much, those too dear for what later groups can save,
+// and those that cost no less than another and are worth no more. Of the rest, those that have lost most.
+void Core::prune(double room_s, double multiplier, double savings_s, std::size_t most_states) {
+  const auto state = [&](std::int32_t s) -> const State& { return states_[static_cast<std::size_t>(s)]; };
+  std::erase_if(front_,
+                [&](std::int32_t s) { return !(state(s).loss < best_) || state(s).cost_s - savings_s > room_s; });
+  std::sort(front_.begin(), front_.end(), [&](std::int32_t a, std::int32_t b) {
+    if (state(a).cost_s != state(b).cost_s) return state(a).cost_s < state(b).cost_s;
+    return state(a).loss != state(b).loss ? state(a).loss < state(b).loss : a < b;
+  });
+  double most = -std::numeric_limits<double>::infinity();
+  std::erase_if(front_, [&](std::int32_t s) {
+    const double worth = multiplier * state(s).cost_s - state(s).loss;
+    if (!(worth > most)) return true;
+    most = worth;
+    return false;
+  });
   if (front_.size() <= most_states) return;
-  std::nth_element(front_.begin(), front_.begin() + static_cast<std::ptrdiff_t>(most_states), front_.end(),
-                   [&](std::int32_t a, std::int32_t b) { return loss(a) != loss(b) ? loss(a) < loss(b) : a < b; });
+  std::sort(front_.begin(), front_.end(), [&](std::int32_t a, std::int32_t b) {
+    return state(a).loss != state(b).loss ? state(a).loss < state(b).loss : a < b;
+  });
   front_.resize(most_states);
-  std::sort(front_.begin(), front_.end());  // standard libraries partition differently
 }
 
 double Core::solve(double room_s, double multiplier, std::size_t most_states, double enough) {
@@ -49,11 +63,13 @@ double Core::solve(double room_s, double multiplier, std::size_t most_states, do
   best_ = multiplier * room_s;
   best_state_ = 0;
   const Move* const end = moves_.data() + moves_.size();
+  double savings_s = 0;  // by all moves to come: no less than any choice of them saves
+  for (const Move& move : moves_) savings_s += std::max(-move.cost_s, 0.0);
   for (const Move* first = moves_.data(); first != end && best_ > enough;) {
     const Move* last = first;
-    while (last != end && last->group == first->group) ++last;
+    for (; last != end && last->group == first->group; ++last) savings_s -= std::max(-last->cost_s, 0.0);
     extend(first, last, room_s, multiplier);
-    prune(most_states);
+    prune(room_s, multiplier, std::max(savings_s, 0.0) * (1 + 1e-9), most_states);
     first = last;
   }
   picked_.clear();

@@ -39,11 +39,11 @@ class Core {
   };
 
   void extend(const Move* first, const Move* last, double room_s, double multiplier);
-  void prune(std::size_t most_states);
+  void prune(double room_s, double multiplier, double savings_s, std::size_t most_states);
 
   std::vector<Move> moves_;
-  std::vector<State> states_;         // all ever made, for the way back
-  std::vector<std::int32_t> front_;   // those still worth extending
+  std::vector<State> states_;        // all ever made, for the way back
+  std::vector<std::int32_t> front_;  // those still worth extending
   std::vector<std::uint32_t> picked_;
   double best_ = 0;
   std::int32_t best_state_ = 0;

@@ -13,8 +13,9 @@ namespace {
 constexpr std::size_t kGroups = 24;
 constexpr std::size_t kMostFills = 4;
 constexpr std::size_t kLookedAt = 2048;  // open items looked at for them: more are only there after a sudden change
-constexpr std::size_t kFewItems = 512;    // below this a good end is worth more than the time; above, it is near anyway
-constexpr double kEnough = 3e-6;         // shortfall, as a share of what the budget is worth, at which using the rest ends
+constexpr std::size_t kVeryFewItems = 32;
+constexpr std::size_t kFewItems = 512;  // below this a good end is worth more than the time; above, it is near anyway
+constexpr double kEnough = 3e-6;  // shortfall, as a share of what the budget is worth, at which using the rest ends
 
 // A bracket wider than this is too coarse to work out the bound from the sums at its end.
 constexpr double kWideBracket = 4;
@@ -29,7 +30,7 @@ double FlatSearch::value(std::uint32_t item, int level) const {
   return columns_.valued(item, level) - plan_.multiplier * columns_.cost(item, level);
 }
 
-double FlatSearch::left_s() const { return spendable_s_ - plan_.cost_s; }
+double FlatSearch::left_s() const { return budget_s_ - plan_.cost_s; }
 
 FlatPlan FlatSearch::solve(const LevelColumns& columns, double budget_s, std::span<std::int16_t> level) {
   enclose_and_split(columns, budget_s, level);
@@ -46,17 +47,17 @@ FlatPlan FlatSearch::bound(const LevelColumns& columns, double budget_s, std::sp
 
 void FlatSearch::enclose_and_split(const LevelColumns& columns, double budget_s, std::span<std::int16_t> level) {
   columns_ = columns;
-  spendable_s_ = budget_s * (1 - kReserve);
-  found_ = bracket_.find(columns_, spendable_s_, level, open_);
+  budget_s_ = budget_s * (1 + kRounding);
+  found_ = bracket_.find(columns_, budget_s_, level, open_);
   plan_ = {.feasible = found_.feasible, .operations = found_.looked_at};
   if (!plan_.feasible) return;
   split_.build(columns_, open_, found_.bracket);
   choice_.resize(open_.size());
   for (std::size_t o = 0; o < open_.size(); ++o) choice_[o] = open_[o].high;
-  plan_.multiplier = split_.take(spendable_s_ - found_.pass.high.cost_s, found_.bracket.low, choice_);
+  plan_.multiplier = split_.take(budget_s_ - found_.pass.high.cost_s, found_.bracket.low, choice_);
   plan_.operations += static_cast<std::int64_t>(split_.size());
   bracket_.learn(plan_.multiplier, open_.size(), columns_.size());
-  prove(budget_s);
+  prove();
   CompensatedSum cost_s, benefit;
   cost_s.add(found_.pass.high.cost_s);
   benefit.add(found_.pass.high.benefit);
@@ -73,7 +74,7 @@ void FlatSearch::enclose_and_split(const LevelColumns& columns, double budget_s,
 
 // The dual at the multiplier m: settled items follow from their sums at the bracket's high end h, where each is worth
 // benefit - h * cost; at m that is (h - m) * cost more.
-void FlatSearch::prove(double budget_s) {
+void FlatSearch::prove() {
   const double m = plan_.multiplier, h = found_.bracket.high;
   PassResult pass = found_.pass;
   double worth = 0, magnitude = pass.most_benefit;
@@ -93,12 +94,13 @@ void FlatSearch::prove(double budget_s) {
     worth = at_m.value();
     magnitude += pass.high.worth + h * pass.high.cost_s;
   } else {
-    if (h > 0) pass = pass_over_sample(columns_, {m, m}, 1), plan_.operations += static_cast<std::int64_t>(pass.looked_at);
+    if (h > 0)
+      pass = pass_over_sample(columns_, {m, m}, 1), plan_.operations += static_cast<std::int64_t>(pass.looked_at);
     worth = pass.high.worth;
     magnitude += m * pass.high.cost_s;
     plan_.tight = columns_.kept.empty() && (columns_.may_omit || pass.high.least >= 0);
   }
-  const double money = m > 0 ? m * budget_s : 0;
+  const double money = m > 0 ? m * budget_s_ : 0;
   plan_.bound = money + worth + kBoundError * (money + worth + magnitude) +
                 static_cast<double>(columns_.size() + 8) * std::numeric_limits<double>::min();
 }
@@ -116,17 +118,21 @@ void FlatSearch::choose_ties() {
     ties_.push_back({std::max(loss, 0.0), o});
   }
   const auto nearer = [](const Tie& a, const Tie& b) { return a.loss != b.loss ? a.loss < b.loss : a.open < b.open; };
-  if (ties_.size() > kGroups) {
-    std::nth_element(ties_.begin(), ties_.begin() + kGroups, ties_.end(), nearer);
-    ties_.resize(kGroups);
+  const std::size_t most = columns_.size() < kFewItems ? kGroups : kGroups / 2;
+  if (ties_.size() > most) {
+    std::nth_element(ties_.begin(), ties_.begin() + static_cast<std::ptrdiff_t>(most), ties_.end(), nearer);
+    ties_.resize(most);
   }
   std::sort(ties_.begin(), ties_.end(), nearer);
 }
 
 void FlatSearch::finish() {
-  const double enough = kEnough * plan_.multiplier * spendable_s_;
+  const double enough = kEnough * plan_.multiplier * budget_s_;
   if (plan_.multiplier * left_s() <= enough) return;
-  const std::size_t states = columns_.size() < kFewItems ? most_states_ : std::max<std::size_t>(most_states_ / 8, 1);
+  const std::size_t n = columns_.size();
+  const std::size_t states = n < kVeryFewItems ? 16 * most_states_
+                             : n < kFewItems   ? most_states_
+                                               : most_states_ / 8 + 1;
   choose_ties();
   core_.clear();
   for (std::uint32_t g = 0; g < ties_.size(); ++g) {

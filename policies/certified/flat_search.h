@@ -21,15 +21,16 @@
 
 namespace framesim::certified {
 
-// Part of the budget that is never spent: more than the rounding of the sums in which costs are counted.
-inline constexpr double kReserve = 0x1p-44;
+// Costs are held against a budget larger by this share, which is what sums of the same costs in another order may differ by: what
+// fits exactly must not fail to fit.
+inline constexpr double kRounding = 0x1p-48;
 
 struct FlatPlan {
-  bool feasible = true;         // false: not even the cheapest levels fit; nothing else is filled in
-  double cost_s = 0;            // of the selection; at most the budget
-  double benefit = 0;           // of the selection
-  double bound = 0;             // no selection within the budget, omitting or not, has more benefit
-  bool tight = true;            // the bound is the linear relaxation's; if not, one that may omit and keeps nothing gives that
+  bool feasible = true;  // false: not even the cheapest levels fit; nothing else is filled in
+  double cost_s = 0;     // of the selection; at most the budget
+  double benefit = 0;    // of the selection
+  double bound = 0;      // no selection within the budget, omitting or not, has more benefit
+  bool tight = true;     // the bound is the linear relaxation's; if not, one that may omit and keeps nothing gives that
   double multiplier = 0;
   std::int64_t operations = 0;  // items, steps and states looked at
 };
@@ -50,7 +51,7 @@ class FlatSearch {
   };
 
   void enclose_and_split(const LevelColumns& columns, double budget_s, std::span<std::int16_t> level);
-  void prove(double budget_s);
+  void prove();
   void choose_ties();
   void finish();
   void fill();
@@ -64,7 +65,7 @@ class FlatSearch {
 
   // Of the frame at hand.
   LevelColumns columns_;
-  double spendable_s_ = 0;
+  double budget_s_ = 0;
   BracketSearch::Found found_;
   FlatPlan plan_;
   std::vector<OpenItem> open_;

@@ -6,9 +6,8 @@
 // |share of misses - wanted share| <= (range of q) / (step * T), whatever the frames do, with no assumption on noise or
 // scene. Frames told late enter late, which moves q, but not the sum.
 //
-// q is kept within its range, and frames that no headroom could have changed do not count: a frame in time with
-// everything at its finest, and one too long with everything at its coarsest. So q does not run away while the scene is too
-// easy or too hard, and of the frames where it matters the wanted share is missed.
+// q is kept within its range, and does not run away while headroom changes nothing: a frame too long with everything at its
+// coarsest does not count, and frames in time with everything at its finest count for a few misses in advance, no more.
 #pragma once
 
 #include <algorithm>
@@ -20,11 +19,14 @@ class Headroom {
  public:
   // wanted: share of frames, in (0,1).
   explicit Headroom(double wanted) : wanted_(wanted) {}
-  void forget() { log_ratio_ = 0; }
+  void forget() { log_ratio_ = anchor_ = 0; }
   double budget_s(double planned_s) const { return planned_s * std::exp(-log_ratio_); }
   void observe(bool missed, bool all_finest, bool all_coarsest) {
-    if (missed ? all_coarsest : all_finest) return;
-    log_ratio_ = std::clamp(log_ratio_ + kStep * ((missed ? 1 : 0) - wanted_), kLeast, kMost);
+    if (missed && all_coarsest) return;
+    const double next = std::clamp(log_ratio_ + kStep * ((missed ? 1 : 0) - wanted_), kLeast, kMost);
+    const bool idle = !missed && all_finest;
+    log_ratio_ = idle ? std::min(log_ratio_, std::max(next, anchor_ - kCredit)) : next;
+    if (!idle) anchor_ = log_ratio_;
   }
   double log_ratio() const { return log_ratio_; }
 
@@ -34,9 +36,11 @@ class Headroom {
   static constexpr double kStep = 0.04;
   static constexpr double kLeast = -1;  // an estimator that is too high by e
   static constexpr double kMost = 3;    // one that is too low by e^3
+  static constexpr double kCredit = 3 * kStep;
 
   const double wanted_;
   double log_ratio_ = 0;
+  double anchor_ = 0;  // after the last frame in which it mattered
 };
 
 }  // namespace framesim::certified

@@ -31,8 +31,12 @@ struct LevelColumns {
   std::size_t size() const { return begin.size() - 1; }
   int levels(std::size_t item) const { return static_cast<int>(begin[item + 1] - begin[item]); }
   // Level -1 is "not drawn".
-  double cost(std::size_t item, int level) const { return level < 0 ? 0 : cost_s[begin[item] + static_cast<std::size_t>(level)]; }
-  double worth(std::size_t item, int level) const { return level < 0 ? 0 : benefit[begin[item] + static_cast<std::size_t>(level)]; }
+  double cost(std::size_t item, int level) const {
+    return level < 0 ? 0 : cost_s[begin[item] + static_cast<std::size_t>(level)];
+  }
+  double worth(std::size_t item, int level) const {
+    return level < 0 ? 0 : benefit[begin[item] + static_cast<std::size_t>(level)];
+  }
   // What the choice goes by: benefit, with the bonus.
   double valued(std::size_t item, int level) const {
     const bool keeps = !kept.empty() && level >= 0 && kept[item] == level;
@@ -58,8 +62,8 @@ struct Bracket {
 
 struct PassResult {
   PassSums low, high;
-  double most_benefit = 0;   // sum over the items of their most beneficial level
-  std::size_t looked_at = 0; // items
+  double most_benefit = 0;    // sum over the items of their most beneficial level
+  std::size_t looked_at = 0;  // items
 };
 
 // An item on which the two multipliers disagree.

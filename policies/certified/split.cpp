@@ -37,7 +37,8 @@ void HullSplit::build(const LevelColumns& columns, const std::vector<OpenItem>& 
 
 // The upper hull of the levels from item.high to item.low, by one scan over them where cost and value rise from each to the
 // next (Andrew's monotone chain), else by gift wrapping.
-void HullSplit::add_steps(const LevelColumns& columns, const OpenItem& item, std::uint32_t open, const Bracket& bracket) {
+void HullSplit::add_steps(const LevelColumns& columns, const OpenItem& item, std::uint32_t open,
+                          const Bracket& bracket) {
   hull_[0] = point(columns, item.item, item.high);
   std::size_t size = 1;
   bool rising = item.high < item.low;
@@ -53,7 +54,8 @@ void HullSplit::add_steps(const LevelColumns& columns, const OpenItem& item, std
     const double cost_s = hull_[k].cost_s - hull_[k - 1].cost_s;
     // Rounding can put a slope outside of the bracket, or above the one before.
     last_slope = std::clamp((hull_[k].value - hull_[k - 1].value) / cost_s, bracket.low, last_slope);
-    steps_.push_back({last_slope, cost_s, open, static_cast<std::int16_t>(hull_[k].level), static_cast<std::uint16_t>(k)});
+    steps_.push_back(
+        {last_slope, cost_s, open, static_cast<std::int16_t>(hull_[k].level), static_cast<std::uint16_t>(k)});
   }
 }
 
@@ -104,7 +106,8 @@ double HullSplit::take(double room_s, double otherwise, std::vector<std::int16_t
     ++first;
     room_s -= pivot.cost_s;
   }
-  std::sort(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.begin() + static_cast<std::ptrdiff_t>(last), steeper);
+  std::sort(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.begin() + static_cast<std::ptrdiff_t>(last),
+            steeper);
   for (; first < last && steps_[first].cost_s <= room_s; ++first) room_s -= steps_[first].cost_s;
   reached_.assign(level.size(), 0);
   for (std::size_t s = 0; s < first; ++s) {

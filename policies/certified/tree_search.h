@@ -24,8 +24,8 @@ struct TreeRules {
 };
 
 struct TreePlan {
-  bool feasible = true;  // false: not even the cheapest cut fits; nothing else is filled in
-  double bound = 0;      // as in FlatPlan
+  bool feasible = true;   // false: not even the cheapest cut fits; nothing else is filled in
+  double bound = 0;       // as in FlatPlan
   double multiplier = 0;  // at which the bound was found: it rises by that for each second of budget, or less
   bool tight = true;
   std::int64_t operations = 0;  // items and states looked at
@@ -62,7 +62,7 @@ class TreeSearch {
   double evaluate(double multiplier, Nodes& nodes);
   bool enclose();
   void narrow();
-  void prove(double budget_s);
+  void prove();
   void settle(std::size_t first, std::size_t last);
   void take_open_jumps(std::size_t first, std::size_t last);
   void improve();
@@ -80,15 +80,15 @@ class TreeSearch {
   // Of the frame at hand.
   const Workload* workload_ = nullptr;
   TreeRules rules_;
-  double spendable_s_ = 0;
-  double m_ = 0;                      // the multiplier being evaluated
-  double low_ = 0, high_ = 0;         // cost at low > budget >= cost at high
+  double budget_s_ = 0;
+  double m_ = 0;               // the multiplier being evaluated
+  double low_ = 0, high_ = 0;  // cost at low > budget >= cost at high
   double low_cost_s_ = 0, high_cost_s_ = 0;
-  double least_at_ = 0;               // multiplier of least_dual_
-  double least_dual_ = 0;             // of all multipliers tried, without the rounding term
-  double magnitude_ = 0;              // what that rounding is relative to
+  double least_at_ = 0;    // multiplier of least_dual_
+  double least_dual_ = 0;  // of all multipliers tried, without the rounding term
+  double magnitude_ = 0;   // what that rounding is relative to
   Nodes at_low_, at_high_, trial_;
-  std::vector<Node> now_;             // the choice being built: own level and x where drawn
+  std::vector<Node> now_;  // the choice being built: own level and x where drawn
   double cost_s_ = 0;
   std::vector<Move> moves_;
   std::vector<std::uint32_t> picked_order_;
