@@ -3,67 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace framesim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kNone = 0xffffffffu;  // the piece "not drawn" of an item with levels
-constexpr std::uint32_t kSettled = kNone;     // in open_children_
-constexpr int kMostRounds = 256;              // a few dozen are the most seen
-constexpr std::size_t kSampleSize = 256;      // slopes that a pivot is chosen from
-constexpr double kSampleError = 1.0 / 16;     // of a share, about: the root's inverse
-constexpr std::size_t kFirstSample = 1024;    // items whose own minimum brackets that of many more
-constexpr double kGap = 8 * kRounding;        // relative
-constexpr double kSameCost = 64 * kRounding;
-
-DualPiece curve_piece(const CurveTerm& term, double m) { return term.piece(term.piece_index(m)); }
-
-// The more valuable at m, else the cheaper. At infinity only what begins with an infinite slope is worth anything.
-const DualPiece& better(const DualPiece& a, const DualPiece& b, double m) {
-  if (m == kInfinity) return b.w > a.w ? b : a;
-  const double of_a = a.value(m), of_b = b.value(m);
-  if (of_a != of_b) return of_b > of_a ? b : a;
-  return b.cost_s(m) < a.cost_s(m) ? b : a;
-}
+constexpr int kMostRounds = 256;            // a few dozen are the most seen
+constexpr std::size_t kSampleSize = 256;    // slopes that a pivot is chosen from
+constexpr double kSampleError = 1.0 / 16;   // of a share, about: the root's inverse
+constexpr std::size_t kFirstSample = 1024;  // items whose own minimum brackets that of many more
+constexpr double kGap = 8 * kRounding;      // relative
 
 }  // namespace
-
-// The piece that item's own representations choose at m: the most valuable, else the first.
-inline std::uint32_t DualSearch::choose(std::uint32_t item, double m) const {
-  const Workload& w = *workload_;
-  if (w.kind[item] == ItemKind::curve) return static_cast<std::uint32_t>(curves_[item].piece_index(m));
-  std::uint32_t chosen = kNone;
-  double most = 0;
-  for (std::uint32_t k = w.level_begin[item]; k < w.level_begin[item + 1]; ++k) {
-    const double value = w.benefit[k] - m * w.cost_s[k];
-    const bool more = value > most;  // no branch: it would be a guess
-    most = more ? value : most;
-    chosen = more ? k : chosen;
-  }
-  return chosen;
-}
-
-// The same; at 0, where costs do not count, the cheapest of the most beneficial.
-inline std::uint32_t DualSearch::choose_best(std::uint32_t item, double m) const {
-  if (m > 0 || workload_->kind[item] == ItemKind::curve) return choose(item, m);
-  const Workload& w = *workload_;
-  std::uint32_t chosen = kNone;
-  double most = 0;
-  for (std::uint32_t k = w.level_begin[item]; k < w.level_begin[item + 1]; ++k) {
-    const bool cheaper = w.benefit[k] == most && chosen != kNone && w.cost_s[k] < w.cost_s[chosen];
-    const bool more = w.benefit[k] > most || cheaper;
-    most = more ? w.benefit[k] : most;
-    chosen = more ? k : chosen;
-  }
-  return chosen;
-}
-
-inline DualPiece DualSearch::piece(std::uint32_t item, std::uint32_t index) const {
-  if (workload_->kind[item] == ItemKind::curve) return curves_[item].piece(static_cast<int>(index));
-  return index == kNone ? DualPiece{} : DualPiece{workload_->benefit[index], 0, workload_->cost_s[index]};
-}
 
 double DualSearch::minimise(const Workload& workload, double budget_s) {
   workload_ = &workload;
@@ -83,8 +34,8 @@ DualSearch::Bracket DualSearch::bracket(double budget_s) {
   for (std::size_t i = 0; i < workload_->size(); i += stride) {
     const auto item = static_cast<std::uint32_t>(i);
     const bool curve = workload_->kind[i] == ItemKind::curve;
-    const double cost_s = curve ? curve_piece(curve_term(*workload_, i), best_m_).cost_s(best_m_)
-                                : piece(item, choose_best(item, best_m_)).d;
+    const double cost_s =
+        curve ? curve_term(*workload_, i).piece_at(best_m_).cost_s(best_m_) : piece(item, choose_best(item, best_m_)).d;
     sum += cost_s;
     squares += cost_s * cost_s;
   }
@@ -148,14 +99,6 @@ void DualSearch::start(double low, double high, std::size_t stride) {
   start_trees();
 }
 
-void DualSearch::start_trees() {
-  choose_in_trees(low_, at_low_);
-  for (const std::uint32_t node : nodes_) node_low_[node] = node_now_[node];
-  choose_in_trees(high_, at_high_);
-  for (const std::uint32_t node : nodes_) node_high_[node] = node_now_[node];
-  settle_trees();
-}
-
 void DualSearch::keep_curve(std::uint32_t item, const CurveTerm& term) {
   if (curves_.size() <= item) curves_.resize(workload_->size());
   curves_[item] = term;
@@ -176,22 +119,11 @@ void DualSearch::add_curve(std::uint32_t item) {
   const CurveTerm term = curve_term(*workload_, item);
   Unit unit{item, static_cast<std::uint32_t>(term.piece_index(low_)),
             static_cast<std::uint32_t>(term.piece_index(high_)), kNone, 0};
-  at_low_.add(curve_piece(term, low_));
-  at_high_.add(curve_piece(term, high_));
+  at_low_.add(term.piece_at(low_));
+  at_high_.add(term.piece_at(high_));
   if (settle_curve(term, unit)) return;
   keep_curve(item, term);
   units_.push_back(unit);
-}
-
-void DualSearch::add_tree(std::uint32_t root) {
-  const Workload& w = *workload_;
-  parent_[root] = kNoParent;
-  for (std::uint32_t i = root; i < w.subtree_end[root]; ++i) {
-    nodes_.push_back(i);
-    base_[i] = {};
-    if (w.kind[i] == ItemKind::curve) keep_curve(i, curve_term(w, i));
-    for (std::uint32_t child = i + 1; child < w.subtree_end[i]; child = w.subtree_end[child]) parent_[child] = i;
-  }
 }
 
 void DualSearch::evaluate(double m) {
@@ -205,18 +137,6 @@ void DualSearch::evaluate(double m) {
   if (!(value < best_)) return;
   best_ = value;
   best_m_ = m;
-}
-
-// From the last node to the first, so that children come before their parent.
-void DualSearch::choose_in_trees(double m, DualPiece& total) {
-  for (const std::uint32_t node : nodes_) node_now_[node] = base_[node];
-  for (std::size_t k = nodes_.size(); k-- > 0;) {
-    const std::uint32_t node = nodes_[k];
-    if (workload_->kind[node] != ItemKind::bundle) {
-      node_now_[node] = better(piece(node, choose_best(node, m)), node_now_[node], m);
-    }
-    (parent_[node] == kNoParent ? total : node_now_[parent_[node]]).add(node_now_[node]);
-  }
 }
 
 // m becomes one end of the bracket.
@@ -258,49 +178,6 @@ bool DualSearch::settle_curve(const CurveTerm& term, Unit& unit) {
   if (inside(unit.key)) return false;
   settled_.add(term.piece(static_cast<int>(unit.at_high)));
   return true;
-}
-
-// The node's term between low and high, where it is known. A convex term is a line between two points where it touches lines
-// of the same slope, or lines that do not meet in between. A bundle's children are settled before it.
-std::optional<DualPiece> DualSearch::settled_piece(std::uint32_t node) const {
-  const DualPiece &low = node_low_[node], &high = node_high_[node];
-  if (low.w == 0 && high.w == 0) {
-    if (std::fabs(low.d - high.d) <= kSameCost * low.d) return high;
-    const double key = (low.a - high.a) / (low.d - high.d);
-    if (!inside(key)) return key <= low_ ? high : low;
-  }
-  if (workload_->kind[node] == ItemKind::bundle && open_children_[node] == 0) return base_[node];
-  const bool leaf = workload_->subtree_end[node] == node + 1;
-  if (workload_->kind[node] != ItemKind::curve || !leaf) return std::nullopt;
-  const CurveTerm& term = curves_[node];
-  if (inside(term.first) || inside(term.second)) return std::nullopt;
-  return curve_piece(term, high_);
-}
-
-void DualSearch::settle_trees() {
-  for (const std::uint32_t node : nodes_) open_children_[node] = 0;
-  for (std::size_t k = nodes_.size(); k-- > 0;) {
-    const std::uint32_t node = nodes_[k];
-    const std::optional<DualPiece> piece = settled_piece(node);
-    const bool root = parent_[node] == kNoParent;
-    if (piece) {
-      open_children_[node] = kSettled;
-      (root ? settled_ : base_[parent_[node]]).add(*piece);
-    } else if (!root) {
-      ++open_children_[parent_[node]];
-    }
-  }
-  std::size_t kept = 0;
-  std::uint32_t end = 0;  // of the last subtree taken out
-  for (const std::uint32_t node : nodes_) {
-    if (node < end) continue;
-    if (open_children_[node] == kSettled) {
-      end = workload_->subtree_end[node];
-    } else {
-      nodes_[kept++] = node;
-    }
-  }
-  nodes_.resize(kept);
 }
 
 double DualSearch::pivot(int round) {

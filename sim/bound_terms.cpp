@@ -70,9 +70,9 @@ CurveTerm curve_term(const Workload& workload, std::size_t item) {
   return term;
 }
 
-// A line of cost through the whole range, s + r*x with x unbounded, is worth no more than half^2/(r*m) - m*s. Where its best x is
-// at most 1, that is no more than the curve is worth, since neither line undercuts the curve's cost outside of its
-// own part: the bound is sharp. Beyond, x = 1 is best.
+// A line of cost through the whole range, s + r*x with x unbounded, is worth no more than half^2/(r*m) - m*s. Where its
+// best x is at most 1, that is no more than the curve is worth, since neither line undercuts the curve's cost outside
+// of its own part: the bound is sharp. Beyond, x = 1 is best.
 double curve_term_above(const Workload& workload, std::size_t item, double m) {
   const CurveNumbers c = numbers(workload, item);
   if (!(c.whole > 0)) return 0;
@@ -89,8 +89,8 @@ double curve_term_above(const Workload& workload, std::size_t item, double m) {
   return best;
 }
 
-// b*(1 + 4u), rounded, is at least b*(1 + 2u), and m*c, rounded, at most m*c*(1 + u): the rounded difference is not below
-// b - m*c.
+// b*(1 + 4u), rounded, is at least b*(1 + 2u), and m*c, rounded, at most m*c*(1 + u): the rounded difference is not
+// below b - m*c.
 double own_term_above(const Workload& workload, std::size_t item, double m) {
   if (workload.kind[item] == ItemKind::curve) return curve_term_above(workload, item, m);
   double best = 0;

@@ -28,8 +28,8 @@ struct DualPiece {
   double value(double m) const { return (w > 0 ? a + w / m : a) - m * d; }
 };
 
-// A curve's term as m falls: the outer piece (nothing drawn, or x below the knee), from `first` on the middle one (x above
-// the knee), from `second` on the full one (x = 1). Pieces may be missing; first >= second.
+// A curve's term as m falls: the outer piece (nothing drawn, or x below the knee), from `first` on the middle one (x
+// above the knee), from `second` on the full one (x = 1). Pieces may be missing; first >= second.
 struct CurveTerm {
   double first = -1;
   double second = -1;
@@ -38,6 +38,7 @@ struct CurveTerm {
   DualPiece full;
 
   int piece_index(double m) const { return (m <= first ? 1 : 0) + (m <= second ? 1 : 0); }
+  DualPiece piece_at(double m) const { return piece(piece_index(m)); }
   DualPiece piece(int index) const { return index == 0 ? DualPiece{0, outer_w, 0} : index == 1 ? middle : full; }
 };
 CurveTerm curve_term(const Workload& workload, std::size_t item);

@@ -17,8 +17,8 @@ struct ItemOption {
   std::int16_t level = -1;
 };
 
-// The linear relaxation's solution without its one fractional step (the split solution), and what might improve on it. Each
-// item's options are sorted by cost, dominated ones left out. Against the chosen option an option changes cost and
+// The linear relaxation's solution without its one fractional step (the split solution), and what might improve on it.
+// Each item's options are sorted by cost, dominated ones left out. Against the chosen option an option changes cost and
 // benefit; m being the relaxation's multiplier, it loses m*change of cost - change of benefit >= 0 of the bound.
 class CoreProblem {
  public:

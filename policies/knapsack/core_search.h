@@ -16,18 +16,18 @@ struct CoreLimits {
   double gap = 0;                 // relative: what is better by no more is not looked for
 };
 
-// Pisinger 1995 (mcknap), with doubles for costs: items enter the core in the order of how close their slopes are to the
-// multiplier. For the items of the core a list of (cost, benefit) of all combinations of their options is kept, by rising
-// cost and benefit, dominated ones left out, all other items being as the relaxation has them. A combination is dropped if
-// not even a step at the best slope of the items to come makes it better than the best found. Costs and benefits are
-// sums of twice the digits, so that no order of adding matters.
+// Pisinger 1995 (mcknap), with doubles for costs: items enter the core in the order of how close their slopes are to
+// the multiplier. For the items of the core a list of (cost, benefit) of all combinations of their options is kept, by
+// rising cost and benefit, dominated ones left out, all other items being as the relaxation has them. A combination is
+// dropped if not even a step at the best slope of the items to come makes it better than the best found. Costs and
+// benefits are sums of twice the digits, so that no order of adding matters.
 //
 // An empty list is the proof. Where the list grows beyond `width`, those that promise least are dropped and the largest
 // of their bounds is remembered: the search goes on without proof, unless it finds something as good as that.
 class CoreSearch {
  public:
-  // Looks for better than `known`, the value of a selection at hand, in a problem reduced for it. False if nothing better was
-  // found; bound() and proven() hold in either case.
+  // Looks for better than `known`, the value of a selection at hand, in a problem reduced for it. False if nothing
+  // better was found; bound() and proven() hold in either case.
   bool improve(const CoreProblem& problem, double budget_s, double known, const CoreLimits& limits);
 
   // No selection is worth more, but for kOptimal.

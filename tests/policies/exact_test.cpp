@@ -89,8 +89,8 @@ TEST_CASE("exact: what no greedy finds") {
   CHECK(s.bound == 22.0);
 }
 
-// The cases of funkhouser's test: A = {(1,1),(3,10)}, B = {(1,0.5)}. At 3, A's finer level alone is worth 10, but both can
-// be drawn, for 1.5. At 1.5 not both: A's coarser level.
+// The cases of funkhouser's test: A = {(1,1),(3,10)}, B = {(1,0.5)}. At 3, A's finer level alone is worth 10, but both
+// can be drawn, for 1.5. At 1.5 not both: A's coarser level.
 TEST_CASE("exact: without omit every object is drawn while the cheapest levels fit together") {
   TestWorkload w;
   w.add_item({{1, 1}, {3, 10}});
@@ -184,8 +184,8 @@ bool draws_all(const Selection& s) { return std::find(s.level.begin(), s.level.e
 
 }  // namespace
 
-// bound >= exact >= every policy of flat lists that keeps the budget here: those that draw everything against the default, all
-// against omit=true.
+// bound >= exact >= every policy of flat lists that keeps the budget here: those that draw everything against the
+// default, all against omit=true.
 TEST_CASE("exact: no flat policy is better within the budget, and no exact above the bound") {
   int compared = 0;
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
@@ -236,7 +236,8 @@ TEST_CASE("exact: without proof it says so, and its bound holds") {
   CHECK(without > 100);  // or nothing was shown
 }
 
-// Benefit = cost of 200 objects: the budget would have to be filled to 14 digits, which no list of a thousand states does.
+// Benefit = cost of 200 objects: the budget would have to be filled to 14 digits, which no list of a thousand states
+// does.
 TEST_CASE("exact: a hard family ends at its limit with a close selection and a bound") {
   const TestWorkload w = family_workload(KnapsackFamily::tied, 1, 200, 4);
   const double budget_s = 0.3 * w.finest_cost_s();

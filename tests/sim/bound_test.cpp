@@ -327,8 +327,8 @@ TEST_CASE("bound: one curve") {
   check_sharp(bound_of(w.workload, 1e-12), Big(10) * sqrt(Big(1e-12) / 4));
 }
 
-// sum w_i sqrt(x_i), sum c_i x_i = T: sqrt(T * sum w_i^2/c_i) (MODEL section 5, lagrange). Here w = 3, 4, c = 1, 2, T = 0.5:
-// sqrt(0.5 * (9 + 8)); x_i = T (w_i/c_i)^2 / 17 = 0.26, 0.12, both inside.
+// sum w_i sqrt(x_i), sum c_i x_i = T: sqrt(T * sum w_i^2/c_i) (MODEL section 5, lagrange). Here w = 3, 4, c = 1, 2, T =
+// 0.5: sqrt(0.5 * (9 + 8)); x_i = T (w_i/c_i)^2 / 17 = 0.26, 0.12, both inside.
 TEST_CASE("bound: two curves, in closed form") {
   TestWorkload w;
   w.add_curve(1, 3);
@@ -416,7 +416,8 @@ TEST_CASE("bound: curves and levels, against curves sampled as levels") {
     const double budget_s = some_budget(random, w);
     CAPTURE(budget_s);
     const double reference = bound_of(sampled(w.workload, 4000).workload, budget_s) * (1 - 1e-13);
-    // The grid's first step is 1/4000 of a benefit: a budget of not much more falls short by a share, not by its square.
+    // The grid's first step is 1/4000 of a benefit: a budget of not much more falls short by a share, not by its
+    // square.
     check_sharp(bound_of(w.workload, budget_s), reference, budget_s < 1e-3 ? 1 : 1e-4);
   }
 }
