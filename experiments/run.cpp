@@ -20,6 +20,7 @@ MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
     if (const auto missing = missing_costs(scene, profile)) throw InputError(spec.machine->where, *missing);
   }
   if (spec.overlap) profile.overlap = *spec.overlap;
+  if (spec.free_decisions) profile.operation_s = 0;
   return profile;
 }
 

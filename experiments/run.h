@@ -36,9 +36,10 @@ struct RunSpec {
   std::uint64_t seed = 1;
   std::int64_t frames = 0;  // at most so many; 0 = the whole camera path
   EngineOptions engine;
-  bool bound = false;        // find the upper bound on each frame's benefit
-  bool profile = false;      // measure where the host's time goes: RunResult::profile
-  bool verify = false;       // check every selection against the rules (slow)
+  bool free_decisions = false;  // the simulated machine charges nothing for a policy's operations
+  bool bound = false;           // find the upper bound on each frame's benefit
+  bool profile = false;         // measure where the host's time goes: RunResult::profile
+  bool verify = false;          // check every selection against the rules (slow)
   bool force_inert = false;  // run inert effects too instead of leaving them out: for tests, since it changes nothing
 };
 
@@ -56,12 +57,12 @@ struct RunResult {
   double target_s = 0;
   std::uint64_t seed = 0;
   Summary summary;
-  std::int64_t slowest_frame = 0;           // frame 0, which fills the pipeline, left out
-  Simulation::CriticalPath slowest_path;    // ... and its critical path; empty unless the engine traces it
+  std::int64_t slowest_frame = 0;         // frame 0, which fills the pipeline, left out
+  Simulation::CriticalPath slowest_path;  // ... and its critical path; empty unless the engine traces it
   std::vector<FrameRecord> records;
   std::uint64_t records_hash = 0;
   std::int64_t benchmark_draws = 0;  // by the estimator, before the first frame
-  StepProfile profile;  // if asked for; measured, so it differs from run to run
+  StepProfile profile;               // if asked for; measured, so it differs from run to run
 };
 
 // What a run would do, without running a frame: for `framesim explain`.

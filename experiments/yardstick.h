@@ -1,6 +1,6 @@
 // How much of a run's error is whose fault: the run beside others in which ideal parts stand in for its own.
 //
-//   least       exact selection, oracle estimator, exact inverse of the overlap: the AvgErr that scene, target, machine and
+//   least       exact selection, oracle estimator, exact inverse of the overlap, decisions free of charge: the AvgErr that scene, target, machine and
 //               effects leave to anyone (jitter, granularity, and what the coarsest levels cost, remain)
 //   estimator   the same with the run's own estimator: what not knowing the machine adds
 //   planner     the same with the run's own planner: what a budget that does not invert the overlap adds

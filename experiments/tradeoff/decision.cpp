@@ -114,7 +114,8 @@ WorkPoint measure(const Problem& problem, const Spec& spec, const std::string& s
       if (selection.planned_cost_s > problem.budget_s[k] * (1 + 1e-9)) ++overdrawn;
       const FrameBound& bound = problem.bounds[k];
       const double room = bound.benefit - bound.coarsest_benefit;
-      errors.push_back(room > 1e-9 * bound.benefit ? std::max(0.0, bound.benefit - selection.planned_benefit) / room : 0);
+      errors.push_back(room > 1e-9 * bound.benefit ? std::max(0.0, bound.benefit - selection.planned_benefit) / room
+                                                   : 0);
     }
     point.time_s = std::min(point.time_s, took_s / static_cast<double>(frames.size() - 1));
   }
@@ -124,10 +125,13 @@ WorkPoint measure(const Problem& problem, const Spec& spec, const std::string& s
   return point;
 }
 
-std::string show_size(std::size_t items) { return fmt::format("10^{:.0f} items", std::log10(static_cast<double>(items))); }
+std::string show_size(std::size_t items) {
+  return fmt::format("10^{:.0f} items", std::log10(static_cast<double>(items)));
+}
 
 // All policies on one scene at one size. `slowest_s` is what each method took at the size before.
-WorkPanel measure_size(const Scene& scene, std::size_t items, std::map<std::string, double>& slowest_s, Progress& progress) {
+WorkPanel measure_size(const Scene& scene, std::size_t items, std::map<std::string, double>& slowest_s,
+                       Progress& progress) {
   WorkPanel panel{.title = show_size(items), .curves = {}};
   std::map<std::pair<bool, bool>, Problem> problems;  // by what a policy can take
   for (const PolicyEntry& entry : policies()) {
@@ -136,7 +140,8 @@ WorkPanel measure_size(const Scene& scene, std::size_t items, std::map<std::stri
       const std::string text = setting.empty() ? curve.method : fmt::format("{}:{}", curve.method, setting);
       double& last_s = slowest_s[text];
       if (last_s > kLongestFrame_s) {
-        curve.points.push_back({.setting = setting, .failure = fmt::format("more than {} s a frame at fewer items", kLongestFrame_s)});
+        curve.points.push_back(
+            {.setting = setting, .failure = fmt::format("more than {} s a frame at fewer items", kLongestFrame_s)});
         progress.advance();
         continue;
       }
@@ -164,18 +169,22 @@ std::size_t settings_in_all() {
 }  // namespace
 
 Tradeoff tradeoff_decision(std::size_t most_items, bool quiet) {
-  Tradeoff tradeoff{.title = "Decision",
-                    .problem = fmt::format("Each policy decides about workloads with each built-in scene's mix of items, made of copies "
-                                           "of its frames, at sizes from 10^2 to {}; the budget is {:.0f} % of the way from the cost of "
-                                           "everything at its coarsest to that of everything at its finest. Frames follow each other as in a run; "
-                                           "the first, cold one is not counted. Costs are exact.",
-                                           show_size(most_items), 100 * kBudgetShare),
-                    .reference = "the upper bound on the benefit that any selection within the budget can have (linear relaxation), for the "
-                                 "same workload; ngap = (bound - benefit) / (bound - benefit of all-coarsest)",
-                    .diagrams = {}};
+  Tradeoff tradeoff{
+      .title = "Decision",
+      .problem = fmt::format(
+          "Each policy decides about workloads with each built-in scene's mix of items, made of copies "
+          "of its frames, at sizes from 10^2 to {}; the budget is {:.0f} % of the way from the cost of "
+          "everything at its coarsest to that of everything at its finest. Frames follow each other as in a run; "
+          "the first, cold one is not counted. Costs are exact.",
+          show_size(most_items), 100 * kBudgetShare),
+      .reference =
+          "the upper bound on the benefit that any selection within the budget can have (linear relaxation), for the "
+          "same workload; ngap = (bound - benefit) / (bound - benefit of all-coarsest)",
+      .diagrams = {}};
   std::vector<std::size_t> sizes;
   for (std::size_t items = 100; items <= most_items; items *= 10) sizes.push_back(items);
-  Progress progress("decisions", static_cast<std::int64_t>(sizes.size() * settings_in_all() * built_in_scenes().size()), quiet);
+  Progress progress("decisions", static_cast<std::int64_t>(sizes.size() * settings_in_all() * built_in_scenes().size()),
+                    quiet);
   for (const BuiltIn& name : built_in_scenes()) {
     const Scene scene = load_scene({std::string(name.name), {}, {"tradeoff"}});
     WorkDiagram diagram{.name = fmt::format("decision-{}", name.name),

@@ -60,7 +60,8 @@ void measure_scene(std::string_view name, WorkPanel& drawing, WorkPanel& frame, 
     for (const std::string& setting : knob.settings) {
       RunSpec spec = default_run(name, "robin-hood");
       spec.target_s = scene.targets_s.front();
-      spec.estimator = parse_spec(setting.empty() ? std::string(knob.estimator) : fmt::format("{}:{}", knob.estimator, setting));
+      spec.estimator =
+          parse_spec(setting.empty() ? std::string(knob.estimator) : fmt::format("{}:{}", knob.estimator, setting));
       const TimedRun timed = run_timed(spec, scene, {StepPart::estimate, StepPart::tell});
       const Errors errors = errors_of(timed.result);
       of_drawing.points.push_back(point_of(timed, setting, errors.drawing));
@@ -76,11 +77,16 @@ void measure_scene(std::string_view name, WorkPanel& drawing, WorkPanel& frame, 
 
 Tradeoff tradeoff_estimate(bool quiet) {
   Tradeoff tradeoff{.title = "Cost estimate",
-                    .problem = "Each built-in scene under robin-hood at its first target, with each estimator over its sampling density and its feedback "
-                               "gain. Time is that of pricing a frame's items and of correcting the estimate after it; counted are the benchmark's draws before "
-                               "the first frame.",
-                    .reference = "what the simulated machine really took: |t_act - t_est| / t_act of the drawing time (Dong et al. 2015, eq. 10), and "
-                                 "|T - target| / target of the frame time that the estimate leads to",
+                    .problem =
+                        "Each built-in scene under robin-hood at its first target, with each estimator over its "
+                        "sampling density and its feedback "
+                        "gain. Time is that of pricing a frame's items and of correcting the estimate after it; "
+                        "counted are the benchmark's draws before "
+                        "the first frame.",
+                    .reference =
+                        "what the simulated machine really took: |t_act - t_est| / t_act of the drawing time (Dong et "
+                        "al. 2015, eq. 10), and "
+                        "|T - target| / target of the frame time that the estimate leads to",
                     .diagrams = {}};
   WorkDiagram drawing{.name = "estimate-drawing",
                       .title = "What accuracy of the cost estimate costs: drawing time",

@@ -53,15 +53,22 @@ std::string failures(const WorkDiagram& diagram) {
 
 // The price of a digit, panel by panel: the cheapest way to each power of ten, and how many times dearer than the one before.
 std::string digits_table(const WorkDiagram& diagram, bool counted) {
-  std::string text = fmt::format("| panel | error at most | {} | times the digit before | by |\n|---|--:|--:|--:|---|\n",
-                                 counted ? diagram.operation : "time a frame");
+  std::string text =
+      fmt::format("| panel | error at most | {} | times the digit before | by |\n|---|--:|--:|--:|---|\n",
+                  counted ? diagram.operation : "time a frame");
   for (const WorkPanel& panel : diagram.panels) {
     double before = NAN;
+    struct {
+      std::string method, setting;
+    } last;
     for (const DigitCost& digit : cost_of_digits(panel, counted)) {
       if (!digit.cheapest) {
         text += fmt::format("| {} | {:.0e} | NA | NA | none |\n", cell(panel.title), digit.error);
         continue;
       }
+      // The same point again: this digit is free.
+      if (digit.method == last.method && digit.cheapest->setting == last.setting) continue;
+      last = {digit.method, digit.cheapest->setting};
       const double cost = counted ? digit.cheapest->operations : digit.cheapest->time_s;
       text += fmt::format("| {} | {:.0e} | {} | {} | {} |\n", cell(panel.title), digit.error,
                           counted ? fmt::format("{:.4g}", cost) : show_time(cost),
@@ -110,10 +117,13 @@ std::string reading(const WorkDiagram& diagram) {
       text += fmt::format("- {}: no method succeeded.\n", panel.title);
       continue;
     }
-    text += fmt::format("- {}: most accurate is {}, error {:.2g} (largest {:.2g}) in {}; cheapest is {}, error {:.2g} in {}", panel.title,
-                        named(best.method, *best.point), best.point->error_mean, best.point->error_max, show_time(best.point->time_s),
-                        named(quick.method, *quick.point), quick.point->error_mean, show_time(quick.point->time_s));
-    if (best.point != quick.point) text += fmt::format(": {:.1f} times the time", best.point->time_s / quick.point->time_s);
+    text += fmt::format(
+        "- {}: most accurate is {}, error {:.2g} (largest {:.2g}) in {}; cheapest is {}, error {:.2g} in {}",
+        panel.title, named(best.method, *best.point), best.point->error_mean, best.point->error_max,
+        show_time(best.point->time_s), named(quick.method, *quick.point), quick.point->error_mean,
+        show_time(quick.point->time_s));
+    if (best.point != quick.point)
+      text += fmt::format(": {:.1f} times the time", best.point->time_s / quick.point->time_s);
     text += ".\n";
   }
   return text;
@@ -132,19 +142,25 @@ std::string processor() {
 std::string tradeoff_page(const std::vector<Tradeoff>& parts, std::string_view command) {
   std::string text = fmt::format(
       "# What accuracy costs in time\n\n"
-      "Work-precision diagrams: error across, time up, both logarithmic; lower left is better. One curve a method, one point a "
-      "setting of its accuracy knob. Times are minima of several runs after a warm-up; counted operations repeat exactly. A "
-      "gap is a setting that failed; hollow points are errors at or under the floor of the diagram. Next to each picture "
+      "Work-precision diagrams: error across, time up, both logarithmic; lower left is better. One curve a method, one "
+      "point a "
+      "setting of its accuracy knob. Times are minima of several runs after a warm-up; counted operations repeat "
+      "exactly. A "
+      "gap is a setting that failed; hollow points are errors at or under the floor of the diagram. Next to each "
+      "picture "
       "lies its data as CSV.\n\n"
       "Made by `{}` with framesim {} on: {}.\n",
       command, version(), processor());
   for (const Tradeoff& part : parts) {
     text += fmt::format("\n## {}\n\nProblem: {}\n\nReference: {}.\n", part.title, part.problem, part.reference);
     for (const WorkDiagram& diagram : part.diagrams) {
-      text += fmt::format("\n### {}\n\n![{}, measured time]({}-time.svg)\n\n![{}, counted]({}-operations.svg)\n\n", diagram.title, diagram.title,
-                          diagram.name, diagram.title, diagram.name);
-      text += fmt::format("Reading:\n\n{}\nWhat one more digit costs, measured:\n\n{}\n... and counted:\n\n{}\nWho failed, and why:\n\n{}",
-                          reading(diagram), digits_table(diagram, false), digits_table(diagram, true), failures(diagram));
+      text += fmt::format("\n### {}\n\n![{}, measured time]({}-time.svg)\n\n![{}, counted]({}-operations.svg)\n\n",
+                          diagram.title, diagram.title, diagram.name, diagram.title, diagram.name);
+      text += fmt::format(
+          "Reading:\n\n{}\nWhat one more digit costs, measured (digits that cost nothing more are left "
+          "out):\n\n{}\n... and counted:\n\n{}\nWho failed, and "
+          "why:\n\n{}",
+          reading(diagram), digits_table(diagram, false), digits_table(diagram, true), failures(diagram));
     }
   }
   return text;

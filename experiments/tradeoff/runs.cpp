@@ -23,7 +23,8 @@ TimedRun run_timed(const RunSpec& spec, const Scene& scene, std::initializer_lis
     if (k == 0) continue;
     std::int64_t ns = 0;
     for (const StepPart part : parts) ns += timed.result.profile.part_ns[static_cast<std::size_t>(part)];
-    timed.time_s = std::min(timed.time_s, static_cast<double>(ns) * 1e-9 / static_cast<double>(timed.result.profile.frames));
+    timed.time_s =
+        std::min(timed.time_s, static_cast<double>(ns) * 1e-9 / static_cast<double>(timed.result.profile.frames));
   }
   return timed;
 }

@@ -18,7 +18,8 @@ constexpr double kComplexityArea = 0.01;  // as Simulation orders types
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from, std::size_t begin, std::size_t end) {
   if (from.empty()) return;  // a column that was not asked for
-  to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(end));
+  to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
+            from.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
 // One past the last item of the whole roots that fit into `room` items; at least one root.
@@ -112,7 +113,8 @@ ScaledFrames scale_workload(const Scene& scene, const WorkloadRequest& request, 
       added = true;
     }
     empty = added ? 0 : empty + 1;
-    if (std::all_of(scaled.frames.begin(), scaled.frames.end(), [&](const Workload& w) { return w.size() >= items; })) break;
+    if (std::all_of(scaled.frames.begin(), scaled.frames.end(), [&](const Workload& w) { return w.size() >= items; }))
+      break;
   }
   if (std::any_of(scaled.frames.begin(), scaled.frames.end(), [](const Workload& w) { return w.size() == 0; })) {
     throw InputError({scene.name}, "nothing is visible on the whole camera path");

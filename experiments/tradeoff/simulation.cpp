@@ -12,8 +12,10 @@ namespace framesim {
 namespace {
 
 // What makes frame times hard to tell: two streams that meet on a bus, a client that interrupts, and chance.
-const std::vector<std::string> kQueueEffects = {"frames-in-flight:n=2", "fifo:primitive=16,pixel=4", "jitter", "logic-spikes"};
-const std::vector<std::string> kSharedEffects = {"streaming:memory=4MiB,bandwidth=2GB/s", "preemption:period=7ms,duration=1ms"};
+const std::vector<std::string> kQueueEffects = {"frames-in-flight:n=2", "fifo:primitive=16,pixel=4", "jitter",
+                                                "logic-spikes"};
+const std::vector<std::string> kSharedEffects = {"streaming:memory=2,bandwidth=2,preload=false",
+                                                 "preemption:period=7ms,duration=1ms"};
 
 struct Method {
   std::string_view name, setting;
@@ -33,7 +35,8 @@ constexpr Method kMethods[] = {
 };
 
 RunSpec spec_of(std::string_view scene, const Method& method) {
-  RunSpec spec = default_run(scene, "robin-hood");  // it takes nothing back from a frame: all methods see the same decisions
+  RunSpec spec =
+      default_run(scene, "robin-hood");  // it takes nothing back from a frame: all methods see the same decisions
   spec.overlap = parse_overlap("staged");
   spec.engine.kind = method.engine;
   spec.no_effects = {parse_spec("all")};
@@ -85,9 +88,10 @@ WorkPanel measure_scene(std::string_view name, Progress& progress) {
 Tradeoff tradeoff_simulation(bool quiet) {
   Tradeoff tradeoff{
       .title = "Simulation",
-      .problem = fmt::format("Each built-in scene under robin-hood, which takes nothing back from a frame, so that all methods time the "
-                             "same commands. Effects: {}; and, for which only events are exact, {}. A method may leave effects out.",
-                             fmt::join(kQueueEffects, ", "), fmt::join(kSharedEffects, ", ")),
+      .problem = fmt::format(
+          "Each built-in scene under robin-hood, which takes nothing back from a frame, so that all methods time the "
+          "same commands. Effects: {}; and, for which only events are exact, {}. A method may leave effects out.",
+          fmt::join(kQueueEffects, ", "), fmt::join(kSharedEffects, ", ")),
       .reference = "frame time by the event engine with all these effects; error = |T - T_ref| / T_ref of each frame",
       .diagrams = {}};
   WorkDiagram diagram{.name = "simulation",

@@ -28,7 +28,9 @@ std::string diagram_csv(const WorkDiagram& diagram) {
   using Row = std::vector<std::string>;
   std::string text = csv_row(
       Row{"panel", "method", "setting", "error_mean", "error_p99", "error_max", "time_s", "operations", "failure"});
-  const auto number = [](const WorkPoint& p, double value) { return p.failure.empty() ? fmt::format("{}", value) : "NA"; };
+  const auto number = [](const WorkPoint& p, double value) {
+    return p.failure.empty() ? fmt::format("{}", value) : "NA";
+  };
   for (const WorkPanel& panel : diagram.panels) {
     for (const WorkCurve& curve : panel.curves) {
       for (const WorkPoint& p : curve.points) {
@@ -70,7 +72,8 @@ std::string panel_data(const WorkDiagram& diagram, const WorkPanel& panel, std::
         if (p.error_mean <= diagram.floor) hollow += fmt::format("{:.6g} {:.6g}\n", error, height(p, counted) * scale);
       }
     }
-    data += fmt::format("$f{}_{} << EOD\n{}NaN NaN\nEOD\n$h{}_{} << EOD\n{}NaN NaN\nEOD\n", index, m, filled, index, m, hollow);
+    data += fmt::format("$f{}_{} << EOD\n{}NaN NaN\nEOD\n$h{}_{} << EOD\n{}NaN NaN\nEOD\n", index, m, filled, index, m,
+                        hollow);
   }
   return data;
 }
@@ -80,10 +83,11 @@ std::string panel_plot(const WorkPanel& panel, std::size_t index, const std::vec
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto color = kColors[m % kColors.size()];
     const std::size_t shape = m / kColors.size() % kFilled.size();
-    script += fmt::format("$f{0}_{1} using 1:2 with linespoints lw 1.5 pt {2} ps 0.8 lc rgb '{3}' notitle, "
-                          "$h{0}_{1} using 1:2 with points pt 7 ps 0.6 lc rgb 'white' notitle, "
-                          "$h{0}_{1} using 1:2 with points pt {4} ps 0.8 lw 1.5 lc rgb '{3}' notitle{5}",
-                          index, m, kFilled[shape], color, kHollow[shape], m + 1 < methods.size() ? ", \\\n" : "\n");
+    script += fmt::format(
+        "$f{0}_{1} using 1:2 with linespoints lw 1.5 pt {2} ps 0.8 lc rgb '{3}' notitle, "
+        "$h{0}_{1} using 1:2 with points pt 7 ps 0.6 lc rgb 'white' notitle, "
+        "$h{0}_{1} using 1:2 with points pt {4} ps 0.8 lw 1.5 lc rgb '{3}' notitle{5}",
+        index, m, kFilled[shape], color, kHollow[shape], m + 1 < methods.size() ? ", \\\n" : "\n");
   }
   return script;
 }
@@ -91,7 +95,8 @@ std::string panel_plot(const WorkPanel& panel, std::size_t index, const std::vec
 // The last cell of the layout holds the key, so that it hides no curve.
 std::string key_plot(const std::vector<std::string>& methods) {
   std::string script =
-      "set title ''\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nset xrange [0:1]\nset yrange [0:1]\n"
+      "set title ''\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nset xrange "
+      "[0:1]\nset yrange [0:1]\n"
       "set key at graph 0, graph 1 left top Left reverse samplen 2 noenhanced\nplot ";
   for (std::size_t m = 0; m < methods.size(); ++m) {
     script += fmt::format("NaN with linespoints lw 1.5 pt {} ps 0.8 lc rgb '{}' title {}{}",
@@ -111,7 +116,8 @@ std::string diagram_script(const WorkDiagram& diagram, bool counted) {
   for (std::size_t i = 0; i < diagram.panels.size(); ++i) {
     script += panel_data(diagram, diagram.panels[i], i, methods, counted);
   }
-  script += fmt::format("set multiplot layout {},{} title {} noenhanced\n", rows, columns, gnuplot_string(diagram.title));
+  script +=
+      fmt::format("set multiplot layout {},{} title {} noenhanced\n", rows, columns, gnuplot_string(diagram.title));
   script += fmt::format(
       "set logscale xy\nset format xy '10^{{%L}}'\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nunset key\n"
       "set border 3\nset tics nomirror out\nset grid lc rgb '#dddddd'\nset datafile missing 'NaN'\n",
@@ -124,7 +130,8 @@ std::string diagram_script(const WorkDiagram& diagram, bool counted) {
 bool has_points(const WorkDiagram& diagram, bool counted) {
   for (const WorkPanel& panel : diagram.panels) {
     for (const WorkCurve& curve : panel.curves) {
-      if (std::any_of(curve.points.begin(), curve.points.end(), [&](const WorkPoint& p) { return is_drawn(p, counted); }))
+      if (std::any_of(curve.points.begin(), curve.points.end(),
+                      [&](const WorkPoint& p) { return is_drawn(p, counted); }))
         return true;
     }
   }

@@ -34,9 +34,9 @@ struct WorkPanel {
 };
 
 struct WorkDiagram {
-  std::string name;   // of its files, without extension
+  std::string name;  // of its files, without extension
   std::string title;
-  std::string error;  // what is across, with its reference
+  std::string error;      // what is across, with its reference
   std::string operation;  // what is counted
   double floor = 1e-9;    // where an error of 0 or below this is drawn
   std::vector<WorkPanel> panels;
