@@ -95,7 +95,8 @@ std::string slowest(const RunResult& r) {
     text += fmt::format("{}{} {:.3f}", separator, step.name, ms_of(step.time));
     separator = " > ";
   }
-  if (r.slowest_path.backlog.count() > 0) text += fmt::format("; behind earlier frames {:.3f}", ms_of(r.slowest_path.backlog));
+  if (r.slowest_path.backlog.count() > 0)
+    text += fmt::format("; behind earlier frames {:.3f}", ms_of(r.slowest_path.backlog));
   return text;
 }
 
@@ -161,7 +162,8 @@ std::string describe_run(const RunResult& r) {
 
 // The parts of a step on this host, in step order, their sum, and the whole step by a clock of its own.
 std::string describe_profile(const StepProfile& profile, double visible) {
-  std::string text = fmt::format("\n{:<26} {:>12} {:>8} {:>16}\n", "time on this host", "us a frame", "share", "ns/visible item");
+  std::string text =
+      fmt::format("\n{:<26} {:>12} {:>8} {:>16}\n", "time on this host", "us a frame", "share", "ns/visible item");
   const auto row = [&](std::string_view name, std::int64_t ns) {
     const double a_frame = static_cast<double>(ns) / static_cast<double>(profile.frames);
     text += fmt::format("{:<26} {:>12.2f} {:>6.1f} % {:>16.2f}\n", name, a_frame * 1e-3,
@@ -216,10 +218,11 @@ void run_one(const RunOptions& options, const Session& session) {
 // --seeds N: 1 to kMostSeeds, none of them past the largest seed.
 std::int64_t read_seeds(const std::string& text, std::uint64_t first) {
   const QuantityResult count = parse_number(text);
-  const bool whole = count.value && *count.value >= 1 && *count.value <= kMostSeeds &&
-                     *count.value == std::floor(*count.value);
+  const bool whole =
+      count.value && *count.value >= 1 && *count.value <= kMostSeeds && *count.value == std::floor(*count.value);
   if (!whole) {
-    throw InputError(kCommandLine, fmt::format("--seeds: '{}' is not a number of seeds; allowed: 1 to {}", text, kMostSeeds));
+    throw InputError(kCommandLine,
+                     fmt::format("--seeds: '{}' is not a number of seeds; allowed: 1 to {}", text, kMostSeeds));
   }
   const auto seeds = static_cast<std::int64_t>(*count.value);
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(seeds - 1)) {
@@ -280,8 +283,7 @@ void add_run(CLI::App& app, Session& session) {
       ->type_name("TIME");
   add_shared_options(*verb, options->shared);
   verb->add_option("--frames-out", options->frames_out, "Write one row a frame to this CSV file")->type_name("FILE");
-  verb->add_option("--seeds", options->seeds,
-                   "Run N seeds from --seed up, and say how the figures spread over them")
+  verb->add_option("--seeds", options->seeds, "Run N seeds from --seed up, and say how the figures spread over them")
       ->type_name("N");
   verb->add_option("--seeds-out", options->seeds_out, "With --seeds: write one row a seed to this CSV file")
       ->type_name("FILE")
@@ -298,7 +300,8 @@ void add_run(CLI::App& app, Session& session) {
       "f.csv\n"
       "  framesim run street --policy robin-hood --effect jitter:sigma=0.2 --seeds 64\n"
       "  framesim run my/scene.toml --policy funkhouser --target 40ms --overlap staged:2 --plot pictures");
-  verb->callback([options, &session] { options->seeds.empty() ? run_one(*options, session) : run_many(*options, session); });
+  verb->callback(
+      [options, &session] { options->seeds.empty() ? run_one(*options, session) : run_many(*options, session); });
 }
 
 }  // namespace framesim

@@ -72,7 +72,8 @@ class RobinHoodPolicy : public Policy {
   explicit RobinHoodPolicy(const RobinHoodParameters& parameters) : parameters_(parameters) {}
 
   PolicyTraits traits() const override {
-    return {.request = {.curves = true, .columns = Columns::cost | Columns::depth | Columns::distance | Columns::area},
+    const Columns place = parameters_.value == kEquation11 ? Columns::distance : Columns::depth;
+    return {.request = {.curves = true, .columns = Columns::cost | Columns::area | place},
             .keeps_budget = true,
             .may_omit = true,
             .planner = parameters_.planning == kPaper ? "paper" : "inverse",
@@ -128,16 +129,17 @@ class RobinHoodPolicy : public Policy {
   double value_of(const Workload& workload, std::size_t item) const {
     const double area = std::max(workload.area_m2[item], 0.0);
     const double importance = workload.type_of(item).importance;
+    if (parameters_.value == kEquation11) {
+      return std::sqrt(area) / std::max(workload.distance_m[item], parameters_.near_m) * importance;
+    }
     const double z = std::max(workload.depth_m[item], parameters_.near_m);
     switch (parameters_.value) {
-      case kEquation8:
-        return area * importance / std::sqrt(z);
       case kEquation9:
         return area * importance / z;
       case kEquation10:
         return area * importance / (z * z);
       default:
-        return std::sqrt(area) / std::max(workload.distance_m[item], parameters_.near_m) * importance;
+        return area * importance / std::sqrt(z);
     }
   }
 
@@ -201,7 +203,8 @@ class RobinHoodPolicy : public Policy {
     // The finest level that fits. All are looked at and none is a branch, since which it will be cannot be guessed;
     // counted are those that a search from the finest down looks at.
     std::size_t chosen = levels;
-    for (std::size_t l = parameters_.levels ? 0 : levels - 1; l < levels; ++l) chosen = cost_s[l] <= share_s ? l : chosen;
+    for (std::size_t l = parameters_.levels ? 0 : levels - 1; l < levels; ++l)
+      chosen = cost_s[l] <= share_s ? l : chosen;
     if (chosen < levels) {
       selection.operations += static_cast<std::int64_t>(levels - chosen);
       draw(selection, item, chosen);
@@ -226,11 +229,11 @@ class RobinHoodPolicy : public Policy {
   }
 
   const RobinHoodParameters parameters_;
-  std::vector<std::size_t> rank_;   // a type: its place from simple to complex
-  std::vector<std::size_t> first_;  // a rank: first free place in order_
+  std::vector<std::size_t> rank_;     // a type: its place from simple to complex
+  std::vector<std::size_t> first_;    // a rank: first free place in order_
   std::vector<std::uint32_t> order_;  // items in traversal order
   std::vector<double> value_;         // ... and their values
-  std::vector<double> suffix_;      // ... and the sum of values from there on; one more entry, 0
+  std::vector<double> suffix_;        // ... and the sum of values from there on; one more entry, 0
 };
 
 }  // namespace

@@ -155,7 +155,8 @@ class SceneWorkload final : public WorkloadSource {
   // A tree may be presented as blocks, whose facts are made for each frame.
   bool has_fixed_facts() const {
     return scene_.instances.subtree_end.empty() &&
-           std::all_of(type_facts_.begin(), type_facts_.end(), [](const TypeFacts& t) { return t.view == ViewPart::none; });
+           std::all_of(type_facts_.begin(), type_facts_.end(),
+                       [](const TypeFacts& t) { return t.view == ViewPart::none; });
   }
 
   const Facts& finest(std::size_t row) const { return scene_.types[index(instances_[row].type)].levels.back(); }
@@ -164,8 +165,8 @@ class SceneWorkload final : public WorkloadSource {
     const Row& instance = instances_[row];
     const glm::dvec3 line = instance.centre - pose_->eye;
     Sight sight{.depth_m = glm::dot(line, pose_->forward), .distance_m = glm::length(line)};
-    sight.area_px = projected_area_px(static_cast<double>(instance.radius_m), sight.distance_m, sight.depth_m, focal_px_,
-                                      facts_.screen_px);
+    sight.area_px = projected_area_px(static_cast<double>(instance.radius_m), sight.distance_m, sight.depth_m,
+                                      focal_px_, facts_.screen_px);
     return sight;
   }
 

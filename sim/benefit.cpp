@@ -7,8 +7,8 @@ namespace framesim {
 
 namespace {
 
-constexpr double kBaseError = 0.5;           // Funkhouser and Sequin 1993, section 5
-constexpr double kGroveWeight = 1.0 / 16;    // Zach et al. 2002, section 5.3
+constexpr double kBaseError = 0.5;         // Funkhouser and Sequin 1993, section 5
+constexpr double kGroveWeight = 1.0 / 16;  // Zach et al. 2002, section 5.3
 constexpr double kTreesPerGroup = 64;
 
 // Gouraud shading interpolates across a polygon, so its error falls with the square of the samples (exponent m = 2).
@@ -43,8 +43,10 @@ double benefit(const Facts& facts, const ObjectType& type, double area_px) {
   if (facts.stated_benefit) return *facts.stated_benefit;
   if (facts.resolution < 1) return stand_in_benefit(facts, type, area_px);
   switch (type.benefit) {
-    case BenefitModel::funkhouser: return area_px * accuracy(std::min(samples_of(facts), area_px), interpolates(facts.algorithm));
-    case BenefitModel::zach_terrain: return std::sqrt(facts.benefit_weight * area_px);
+    case BenefitModel::funkhouser:
+      return area_px * accuracy(std::min(samples_of(facts), area_px), interpolates(facts.algorithm));
+    case BenefitModel::zach_terrain:
+      return std::sqrt(facts.benefit_weight * area_px);
     case BenefitModel::zach_trees: {
       const double trees = facts.benefit_weight;
       if (trees <= 0) return 0;

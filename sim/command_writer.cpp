@@ -68,10 +68,12 @@ void CommandWriter::write(const Machine& machine, const Workload& workload, cons
     if (const Level* const known = find(workload, i, level)) {
       const Machine::StageTimes times = known->costs.times(area_px, resolution);
       const bool whole = resolution == 1;
-      put(known->submit_ps, whole ? known->primitive_ps : ceil_picoseconds(times.primitive_s).count(), times.pixel_s, item);
+      put(known->submit_ps, whole ? known->primitive_ps : ceil_picoseconds(times.primitive_s).count(), times.pixel_s,
+          item);
     } else {
       const Machine::DrawTimes draw = machine.draw_times(workload, i, level, resolution);
-      put(ceil_picoseconds(draw.submit_s).count(), ceil_picoseconds(draw.stages.primitive_s).count(), draw.stages.pixel_s, item);
+      put(ceil_picoseconds(draw.submit_s).count(), ceil_picoseconds(draw.stages.primitive_s).count(),
+          draw.stages.pixel_s, item);
     }
   }
   resize(commands, row, bus);

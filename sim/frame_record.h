@@ -45,7 +45,7 @@ namespace framesim {
   X(std::int64_t, critical_pixel_ps, "ps", "critical path: per-pixel stage")                               \
   X(std::int64_t, critical_backlog_ps, "ps", "critical path: behind earlier frames")                       \
   X(std::int64_t, critical_present_ps, "ps", "critical path: swap and waiting for the vertical blank") \
-  X(std::int64_t, upload_bytes, "B", "moved to the GPU's memory for this frame")                           \
+  X(std::int64_t, upload_bytes, "bytes", "moved to the GPU's memory for this frame")                           \
   X(std::int64_t, bus_wait_ps, "ps", "per-primitive stage: waiting for uploads and for the bus")           \
   X(std::int64_t, preempted_ps, "ps", "GPU: held by another client")                                       \
   X(std::int64_t, engine_steps, "", "formulas, equations or events that the engine worked off")            \

@@ -16,17 +16,18 @@
 #define FRAMESIM_LANE_PIECE
 namespace framesim {
 namespace {
-// Commands of a frame between two slides of the windows; rows of kLanes but for `submit`.
+// Commands of a frame between two slides of the windows.
 struct LanePiece {
-  const std::int64_t *submit, *primitive, *pixel;
-  const std::int64_t *s1_before, *s2_before;  // S1[i-B1], S2[i-B2]
-  std::int64_t *s1, *s2;
+  const std::int64_t* submit;
+  const LaneRow *primitive, *pixel;
+  const LaneRow *s1_before, *s2_before;  // S1[i-B1], S2[i-B2]
+  LaneRow *s1, *s2;
   std::size_t count;
 };
 // Departures of the last command in all lanes, and the bitwise or of all durations.
 struct LaneState {
-  std::int64_t *p, *e1, *e2;
-  std::int64_t bits;
+  LaneRow p, e1, e2;
+  std::int64_t bits = 0;
 };
 }  // namespace
 }  // namespace framesim
@@ -39,38 +40,59 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Times = hn::CappedTag<std::int64_t, kLanes>;
 
-// The equations of engine.h on the lanes from `lane` on, as many as the register holds.
-HWY_INLINE std::int64_t run_one(const LanePiece& piece, const LaneState& state, std::size_t lane) {
+// Departures of as many lanes as a register holds, from `lane` on.
+#define FRAMESIM_LANES(name, lane)                                                                       \
+  auto p##name = hn::Load(d, state.p.data() + (lane)), e1##name = hn::Load(d, state.e1.data() + (lane)); \
+  auto e2##name = hn::Load(d, state.e2.data() + (lane)), bits##name = hn::Zero(d)
+#define FRAMESIM_STORE_LANES(name, lane)                                                            \
+  hn::Store(p##name, d, state.p.data() + (lane)), hn::Store(e1##name, d, state.e1.data() + (lane)); \
+  hn::Store(e2##name, d, state.e2.data() + (lane)), hn::Store(bits##name, d, bits.data() + (lane))
+
+// The equations of engine.h. Where a register does not hold all lanes, two registers go through the commands together: their
+// chains of dependent operations overlap.
+void RunLanes(const LanePiece& at, LaneState& state) {
+  const LanePiece piece =
+      at;  // its pointers in registers: for all the compiler knows, a store of times may change `at`
   const Times d;
-  const auto row = [lane](const auto* column, std::size_t i) HWY_ATTR { return column + i * kLanes + lane; };
-  auto p = hn::LoadU(d, state.p + lane), e1 = hn::LoadU(d, state.e1 + lane), e2 = hn::LoadU(d, state.e2 + lane);
-  auto bits = hn::Zero(d);
-  for (std::size_t i = 0; i < piece.count; ++i) {
+  const std::size_t n = hn::Lanes(d);
+  LaneRow bits;
+  const auto step = [&](std::size_t i, std::size_t lane, auto& p, auto& e1, auto& e2, auto& any) HWY_ATTR {
     const auto submit = hn::Set(d, piece.submit[i]);
-    const auto primitive = hn::LoadU(d, row(piece.primitive, i)), pixel = hn::LoadU(d, row(piece.pixel, i));
-    bits = hn::Or(bits, hn::Or(submit, hn::Or(primitive, pixel)));
-    p = hn::Max(hn::Add(p, submit), hn::LoadU(d, row(piece.s1_before, i)));
+    const auto primitive = hn::Load(d, piece.primitive[i].data() + lane);
+    const auto pixel = hn::Load(d, piece.pixel[i].data() + lane);
+    any = hn::Or3(any, submit, hn::Or(primitive, pixel));
+    p = hn::Max(hn::Add(p, submit), hn::Load(d, piece.s1_before[i].data() + lane));
     e1 = hn::Max(p, e1);
-    hn::StoreU(e1, d, piece.s1 + i * kLanes + lane);
-    e1 = hn::Max(hn::Add(e1, primitive), hn::LoadU(d, row(piece.s2_before, i)));
+    hn::Store(e1, d, piece.s1[i].data() + lane);
+    e1 = hn::Max(hn::Add(e1, primitive), hn::Load(d, piece.s2_before[i].data() + lane));
     e2 = hn::Max(e1, e2);
-    hn::StoreU(e2, d, piece.s2 + i * kLanes + lane);
+    hn::Store(e2, d, piece.s2[i].data() + lane);
     e2 = hn::Add(e2, pixel);
+  };
+  if (n == kLanes) {
+    FRAMESIM_LANES(_a, 0);
+    for (std::size_t i = 0; i < piece.count; ++i) step(i, 0, p_a, e1_a, e2_a, bits_a);
+    FRAMESIM_STORE_LANES(_a, 0);
+  } else {
+    for (std::size_t lane = 0; lane < kLanes; lane += 2 * n) {
+      FRAMESIM_LANES(_a, lane);
+      FRAMESIM_LANES(_b, lane + n);
+      for (std::size_t i = 0; i < piece.count; ++i) {
+        step(i, lane, p_a, e1_a, e2_a, bits_a);
+        step(i, lane + n, p_b, e1_b, e2_b, bits_b);
+      }
+      FRAMESIM_STORE_LANES(_a, lane);
+      FRAMESIM_STORE_LANES(_b, lane + n);
+    }
   }
-  hn::StoreU(p, d, state.p + lane), hn::StoreU(e1, d, state.e1 + lane), hn::StoreU(e2, d, state.e2 + lane);
-  HWY_ALIGN std::int64_t all[kLanes];
-  hn::StoreU(bits, d, all);
-  std::int64_t any = 0;
-  for (std::size_t l = 0; l < hn::Lanes(d); ++l) any |= all[l];
-  return any;
+  for (const std::int64_t any : bits) state.bits |= any;
 }
 
-void RunLanes(const LanePiece& piece, LaneState& state) {
-  for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(Times())) state.bits |= run_one(piece, state, lane);
-}
+#undef FRAMESIM_LANES
+#undef FRAMESIM_STORE_LANES
 
-// rows[i * kLanes + l] = columns[l][i].
-void Interleave(const std::int64_t* const* columns, std::size_t count, std::int64_t* HWY_RESTRICT rows) {
+// rows[i][l] = columns[l][i].
+void Interleave(const std::int64_t* const* columns, std::size_t count, LaneRow* HWY_RESTRICT rows) {
   std::size_t i = 0;
 #if HWY_TARGET != HWY_SCALAR
   // Two commands of two lanes are transposed at a time.
@@ -78,13 +100,13 @@ void Interleave(const std::int64_t* const* columns, std::size_t count, std::int6
   for (; i + 2 <= count; i += 2) {
     for (std::size_t lane = 0; lane < kLanes; lane += 2) {
       const auto a = hn::LoadU(d, columns[lane] + i), b = hn::LoadU(d, columns[lane + 1] + i);
-      hn::StoreU(hn::InterleaveLower(d, a, b), d, rows + i * kLanes + lane);
-      hn::StoreU(hn::InterleaveUpper(d, a, b), d, rows + (i + 1) * kLanes + lane);
+      hn::StoreU(hn::InterleaveLower(d, a, b), d, rows[i].data() + lane);
+      hn::StoreU(hn::InterleaveUpper(d, a, b), d, rows[i + 1].data() + lane);
     }
   }
 #endif
   for (; i < count; ++i) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) rows[i * kLanes + lane] = columns[lane][i];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) rows[i][lane] = columns[lane][i];
   }
 }
 
@@ -115,8 +137,8 @@ bool add(std::int64_t& a, std::int64_t b) { return __builtin_add_overflow(a, b, 
 
 void LaneCommands::resize(std::size_t count) {
   submit_ps.resize(count, 0);
-  primitive_ps.resize(count * kLanes, 0);
-  pixel_ps.resize(count * kLanes, 0);
+  primitive_ps.resize(count);
+  pixel_ps.resize(count);
 }
 
 void LaneCommands::interleave(const std::array<const CommandColumns*, kLanes>& columns) {
@@ -129,28 +151,27 @@ void LaneCommands::interleave(const std::array<const CommandColumns*, kLanes>& c
   HWY_DYNAMIC_DISPATCH(Interleave)(pixel.data(), size(), pixel_ps.data());
 }
 
-RecurrenceLanes::StartWindow::StartWindow(std::size_t fifo)
-    : places(fifo), time((fifo + std::max(fifo, kSlide)) * kLanes, 0) {}
+RecurrenceLanes::StartWindow::StartWindow(std::size_t fifo) : places(fifo), time(fifo + std::max(fifo, kSlide)) {}
 
 void RecurrenceLanes::StartWindow::make_room() {
-  const auto first = time.begin() + static_cast<std::ptrdiff_t>(oldest * kLanes);
-  std::copy(first, first + static_cast<std::ptrdiff_t>(places * kLanes), time.begin());
+  const auto first = time.begin() + static_cast<std::ptrdiff_t>(oldest);
+  std::copy(first, first + static_cast<std::ptrdiff_t>(places), time.begin());
   oldest = 0;
 }
 
 RecurrenceLanes::RecurrenceLanes(const MachineProfile& machine)
     : primitive_starts_(capacity_of(machine.primitive_fifo, "primitive_fifo")),
       pixel_starts_(capacity_of(machine.pixel_fifo, "pixel_fifo")),
-      shown_(capacity_of(machine.overlap.frames_in_flight, "frames_in_flight"), Row{}) {}
+      shown_(capacity_of(machine.overlap.frames_in_flight, "frames_in_flight")) {}
 
 void RecurrenceLanes::run(const LaneWork& work, std::array<FrameTimes, kLanes>& times) {
   const LaneCommands& commands = work.commands;
-  FRAMESIM_CHECK(commands.size() > 0 && commands.primitive_ps.size() == commands.size() * kLanes &&
-                     commands.pixel_ps.size() == commands.size() * kLanes,
-                 fmt::format("frame {} has {} submit, {} primitive and {} pixel times in {} lanes", frame_,
-                             commands.size(), commands.primitive_ps.size(), commands.pixel_ps.size(), kLanes));
+  FRAMESIM_CHECK(commands.size() > 0 && commands.primitive_ps.size() == commands.size() &&
+                     commands.pixel_ps.size() == commands.size(),
+                 fmt::format("frame {} has {} submit, {} primitive and {} pixel times", frame_, commands.size(),
+                             commands.primitive_ps.size(), commands.pixel_ps.size()));
   start(work, times);
-  const Row drawn_before = pixel_end_;
+  const LaneRow drawn_before = pixel_end_;
   run_commands(commands, times);
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     times[lane].draw_time = SimTime(pixel_end_[lane]) - std::max(times[lane].first_draw, SimTime(drawn_before[lane]));
@@ -160,7 +181,7 @@ void RecurrenceLanes::run(const LaneWork& work, std::array<FrameTimes, kLanes>& 
 
 // CPU start, and P before the first command.
 void RecurrenceLanes::start(const LaneWork& work, std::array<FrameTimes, kLanes>& times) {
-  const Row& waited_for = shown_[next_shown_];  // frame k-n
+  const LaneRow& waited_for = shown_[next_shown_];  // frame k-n
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     times[lane] = {};
     times[lane].cpu_start = SimTime(std::max(submitted_[lane], waited_for[lane]));
@@ -179,7 +200,7 @@ void RecurrenceLanes::run_commands(const LaneCommands& commands, std::array<Fram
     if (!run_plain(commands, begin, end)) run_careful(commands, begin, end, times);
     if (begin == 0) {
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        times[lane].first_draw = SimTime(primitive_starts_.time[first * kLanes + lane]);
+        times[lane].first_draw = SimTime(primitive_starts_.time[first][lane]);
       }
     }
     primitive_starts_.oldest += end - begin;
@@ -191,25 +212,21 @@ void RecurrenceLanes::run_commands(const LaneCommands& commands, std::array<Fram
 // As StagedRecurrence::run_plain, whose proof that nothing passed the end of the clock is made for all lanes at once, from
 // the latest of all departures. If it proves nothing, false is returned and nothing has changed.
 bool RecurrenceLanes::run_plain(const LaneCommands& commands, std::size_t begin, std::size_t end) {
-  Row p = submitted_, e1 = primitive_end_, e2 = pixel_end_;
-  const auto window = [](StartWindow& starts, std::size_t place) {
-    return starts.time.data() + (starts.oldest + place) * kLanes;
-  };
   const LanePiece piece{.submit = commands.submit_ps.data() + begin,
-                        .primitive = commands.primitive_ps.data() + begin * kLanes,
-                        .pixel = commands.pixel_ps.data() + begin * kLanes,
-                        .s1_before = window(primitive_starts_, 0),
-                        .s2_before = window(pixel_starts_, 0),
-                        .s1 = window(primitive_starts_, primitive_starts_.places),
-                        .s2 = window(pixel_starts_, pixel_starts_.places),
+                        .primitive = commands.primitive_ps.data() + begin,
+                        .pixel = commands.pixel_ps.data() + begin,
+                        .s1_before = primitive_starts_.time.data() + primitive_starts_.oldest,
+                        .s2_before = pixel_starts_.time.data() + pixel_starts_.oldest,
+                        .s1 = primitive_starts_.time.data() + primitive_starts_.oldest + primitive_starts_.places,
+                        .s2 = pixel_starts_.time.data() + pixel_starts_.oldest + pixel_starts_.places,
                         .count = end - begin};
-  LaneState state{.p = p.data(), .e1 = e1.data(), .e2 = e2.data(), .bits = 0};
+  LaneState state{.p = submitted_, .e1 = primitive_end_, .e2 = pixel_end_};
   HWY_DYNAMIC_DISPATCH(RunLanes)(piece, state);
-  const auto latest_of = [](const Row& row) { return *std::max_element(row.begin(), row.end()); };
+  const auto latest_of = [](const LaneRow& row) { return *std::max_element(row.begin(), row.end()); };
   const std::int64_t latest = std::max({latest_of(submitted_), latest_of(primitive_end_), latest_of(pixel_end_)});
   if (state.bits < 0 || state.bits > (kEndOfClock - latest) / (3 * static_cast<std::int64_t>(piece.count)))
     return false;
-  submitted_ = p, primitive_end_ = e1, pixel_end_ = e2;
+  submitted_ = state.p, primitive_end_ = state.e1, pixel_end_ = state.e2;
   return true;
 }
 
@@ -217,23 +234,23 @@ bool RecurrenceLanes::run_plain(const LaneCommands& commands, std::size_t begin,
 void RecurrenceLanes::run_careful(const LaneCommands& commands, std::size_t begin, std::size_t end,
                                   const std::array<FrameTimes, kLanes>& times) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    std::int64_t* s1_before = primitive_starts_.time.data() + primitive_starts_.oldest * kLanes + lane;
-    std::int64_t* s2_before = pixel_starts_.time.data() + pixel_starts_.oldest * kLanes + lane;
+    LaneRow* s1_before = primitive_starts_.time.data() + primitive_starts_.oldest;
+    LaneRow* s2_before = pixel_starts_.time.data() + pixel_starts_.oldest;
     std::int64_t &p = submitted_[lane], &e1 = primitive_end_[lane], &e2 = pixel_end_[lane];
     std::int64_t negative = 0;
     bool overflow = false;
-    for (std::size_t i = begin; i < end; ++i, s1_before += kLanes, s2_before += kLanes) {
-      const std::int64_t submit = commands.submit_ps[i], primitive = commands.primitive_ps[i * kLanes + lane];
-      const std::int64_t pixel = commands.pixel_ps[i * kLanes + lane];
+    for (std::size_t i = begin; i < end; ++i, ++s1_before, ++s2_before) {
+      const std::int64_t submit = commands.submit_ps[i], primitive = commands.primitive_ps[i][lane];
+      const std::int64_t pixel = commands.pixel_ps[i][lane];
       negative |= submit | primitive | pixel;
       overflow |= add(p, submit);
-      p = std::max(p, *s1_before);
+      p = std::max(p, (*s1_before)[lane]);
       e1 = std::max(p, e1);
-      s1_before[primitive_starts_.places * kLanes] = e1;
+      s1_before[primitive_starts_.places][lane] = e1;
       overflow |= add(e1, primitive);
-      e1 = std::max(e1, *s2_before);
+      e1 = std::max(e1, (*s2_before)[lane]);
       e2 = std::max(e1, e2);
-      s2_before[pixel_starts_.places * kLanes] = e2;
+      s2_before[pixel_starts_.places][lane] = e2;
       overflow |= add(e2, pixel);
     }
     const std::int64_t start = times[lane].cpu_start.count();
@@ -246,7 +263,7 @@ void RecurrenceLanes::run_careful(const LaneCommands& commands, std::size_t begi
 }
 
 void RecurrenceLanes::finish(const LaneWork& work, std::array<FrameTimes, kLanes>& times) {
-  Row& oldest_shown = shown_[next_shown_];
+  LaneRow& oldest_shown = shown_[next_shown_];
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     FrameTimes& of = times[lane];
     of.submitted = SimTime(submitted_[lane]);

@@ -17,10 +17,13 @@ namespace framesim {
 
 inline constexpr std::size_t kLanes = 8;
 
-// A frame's commands in all lanes: the duration of command i in lane l stands at [i * kLanes + l].
+// One time in each lane. Aligned, so that no register's worth of it lies across two cache lines.
+struct alignas(64) LaneRow : std::array<std::int64_t, kLanes> {};
+
+// A frame's commands in all lanes.
 struct LaneCommands {
-  std::vector<std::int64_t> submit_ps;  // one a command
-  std::vector<std::int64_t> primitive_ps, pixel_ps;
+  std::vector<std::int64_t> submit_ps;  // one a command, the same in all lanes
+  std::vector<LaneRow> primitive_ps, pixel_ps;
 
   std::size_t size() const { return submit_ps.size(); }
   // `count` commands; durations are kept as they are or 0. Allocates only beyond the longest frame so far.
@@ -44,17 +47,16 @@ class RecurrenceLanes {
   void run(const LaneWork& work, std::array<FrameTimes, kLanes>& times);
 
  private:
-  // As in StagedRecurrence, each start a row of kLanes.
+  // As in StagedRecurrence, each start a row.
   struct StartWindow {
     explicit StartWindow(std::size_t fifo);
-    std::size_t room() const { return time.size() / kLanes - places - oldest; }
+    std::size_t room() const { return time.size() - places - oldest; }
     void make_room();
 
     std::size_t places;
     std::size_t oldest = 0;
-    std::vector<std::int64_t> time;
+    std::vector<LaneRow> time;
   };
-  using Row = std::array<std::int64_t, kLanes>;
 
   void start(const LaneWork& work, std::array<FrameTimes, kLanes>& times);
   void run_commands(const LaneCommands& commands, std::array<FrameTimes, kLanes>& times);
@@ -63,12 +65,12 @@ class RecurrenceLanes {
                    const std::array<FrameTimes, kLanes>& times);
   void finish(const LaneWork& work, std::array<FrameTimes, kLanes>& times);
 
-  StartWindow primitive_starts_;                     // S1 of the last B1 commands
-  StartWindow pixel_starts_;                         // S2 of the last B2 commands
-  std::vector<Row> shown_;                           // of the last n frames, a ring
-  std::size_t next_shown_ = 0;                       // its oldest entry
-  Row submitted_{}, primitive_end_{}, pixel_end_{};  // P, E1, E2 of the last command
-  Row last_shown_{};
+  StartWindow primitive_starts_;                         // S1 of the last B1 commands
+  StartWindow pixel_starts_;                             // S2 of the last B2 commands
+  std::vector<LaneRow> shown_;                           // of the last n frames, a ring
+  std::size_t next_shown_ = 0;                           // its oldest entry
+  LaneRow submitted_{}, primitive_end_{}, pixel_end_{};  // P, E1, E2 of the last command
+  LaneRow last_shown_{};
   std::int64_t frame_ = 0;
 };
 

@@ -31,8 +31,8 @@ class Moments {
  public:
   void add(double x);
   std::int64_t count() const { return count_; }
-  double mean() const { return mean_; }         // 0 if empty
-  double deviation() const;                     // sample standard deviation (n-1); 0 for fewer than two
+  double mean() const { return mean_; }  // 0 if empty
+  double deviation() const;              // sample standard deviation (n-1); 0 for fewer than two
 
  private:
   std::int64_t count_ = 0;

@@ -127,11 +127,7 @@ void step_profile(benchmark::State& state) {
   }
   state.counters["parts"] = static_cast<double>(parts_ns) / static_cast<double>(step_ns);
 }
-BENCHMARK(step_profile)
-    ->Name("step/profile")
-    ->Arg(1000)
-    ->Arg(1'000'000)
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(step_profile)->Name("step/profile")->Arg(1000)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
 
 // A frame without any effect, small, so that what a frame costs beside its items shows.
 void step_undeclared(benchmark::State& state) {

@@ -89,15 +89,15 @@ StepRun::StepRun(Scene scene, const StepOptions& options) : scene_(std::move(sce
     effects_.push_back(make("effect", framesim::effects(), effect, std::uint64_t{1}));
     running.push_back(effects_.back().get());
   }
-  simulation_ = std::make_unique<Simulation>(
-      SimulationParts{.scene = *source_,
-                      .policy = *policy_,
-                      .planner = *planner_,
-                      .estimator = *estimator_,
-                      .machine = *machine_,
-                      .logic = scene_.logic,
-                      .effects = running},
-      SimulationConfig{.target_s = options.target_s, .profile = options.profile});
+  simulation_ =
+      std::make_unique<Simulation>(SimulationParts{.scene = *source_,
+                                                   .policy = *policy_,
+                                                   .planner = *planner_,
+                                                   .estimator = *estimator_,
+                                                   .machine = *machine_,
+                                                   .logic = scene_.logic,
+                                                   .effects = running},
+                                   SimulationConfig{.target_s = options.target_s, .profile = options.profile});
 }
 
 StepRun::~StepRun() = default;

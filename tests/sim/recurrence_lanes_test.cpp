@@ -22,9 +22,17 @@ namespace {
 using LaneFrames = std::array<PipelineFrame, kLanes>;
 
 std::vector<std::int64_t> fields(const FrameTimes& t) {
-  std::vector<std::int64_t> all = {t.cpu_start.count(), t.submitted.count(), t.first_draw.count(), t.drawn.count(),
-                                   t.shown.count(),     t.draw_time.count(), t.frame_time.count(), t.latency.count(),
-                                   t.bus_wait.count(),  t.preempted.count()};
+  std::vector<std::int64_t> all = {t.cpu_start.count(),
+                                   t.submitted.count(),
+                                   t.first_draw.count(),
+                                   t.drawn.count(),
+                                   t.shown.count(),
+                                   t.draw_time.count(),
+                                   t.frame_time.count(),
+                                   t.latency.count(),
+                                   t.bus_wait.count(),
+                                   t.preempted.count(),
+                                   t.steps};
   for (const Picoseconds part : t.critical) all.push_back(part.count());
   return all;
 }
