@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/seeds.h"
 #include "tests/policies/make_policy.h"
 
 using namespace framesim;
@@ -89,7 +90,7 @@ TEST_CASE("a policy that says it uses no feedback selects the same whatever it i
       const auto policy = make_policy(spec);
       if (policy->traits().uses_feedback) continue;
       ++open;
-      for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
         CAPTURE(spec, seed);
         const TestWorkload w = workload_for(*policy, seed);
         const std::vector<Selection> untold = run(*policy, w, 0);

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/seeds.h"
 #include "tests/policies/make_policy.h"
 #include "tests/policies/tree/trees.h"
 
@@ -85,7 +86,7 @@ TEST_CASE("impostor-tree: everything is covered, at the least cost where the coa
 
 // Beside all cuts: complete, within the budget wherever some cut is, never above the best; with `gain` never below its start.
 TEST_CASE("impostor-tree: every node is covered and the budget kept on 2000 random forests") {
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(2000); ++seed) {
     TestRandom random(seed + 9000);
     const TestWorkload w = random_forest(seed, random.whole(1, 4), {.falling = seed % 2 == 0});
     const double budget_s = random.uniform(0, 0.6) * w.finest_cost_s();
