@@ -26,7 +26,7 @@ constexpr int kMostRuns = 9;
 
 constexpr double kBudgetShare = 0.3;  // of the way from all-coarsest to all-finest cost
 
-// Settings of a policy's accuracy knob, from fast to accurate; one empty setting for those without.
+// Settings of a policy's accuracy knob, from fast to accurate; an empty setting is the default.
 struct Knob {
   std::string_view policy;
   std::vector<std::string> settings;
@@ -34,6 +34,8 @@ struct Knob {
 const std::vector<Knob>& knobs() {
   static const std::vector<Knob> kKnobs = {
       {"funkhouser", {"rule=printed", "rule=incremental", "rule=repaired"}},
+      {"active-set", {"operations=100", "operations=1000", "operations=10000", ""}},
+      {"exact", {"states=100", "states=10000", ""}},
       {"mixed-gradient", {"rounds=0", "rounds=4", "rounds=200", "rounds=200,direction=multiplier"}},
   };
   return kKnobs;
