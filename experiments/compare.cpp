@@ -39,22 +39,28 @@ void prepare_outputs(const CompareOptions& options) {
   make_folder(options.plot_folder);
 }
 
-void print_table(const CompareOptions& options, std::span<const RunResult> results, TableFormat format) {
-  if (options.output.empty()) {
-    fmt::print("{}", format_table(results, format, wants_color(stdout)));
+void print_table(const CompareOptions& options, std::span<const RunResult> results, TableFormat format,
+                 Yardstick yardstick) {
+  const bool to_file = !options.output.empty();
+  std::string table = format_table(results, format, !to_file && wants_color(stdout));
+  if (format == TableFormat::text && yardstick == Yardstick::parts) table += '\n' + format_error_parts(results);
+  if (to_file) {
+    write_file(options.output, table);
   } else {
-    write_file(options.output, format_table(results, format));
+    fmt::print("{}", table);
   }
 }
 
 void compare(const CompareOptions& options, const Session& session) {
   const TableFormat format = read_format(options.format);
   std::vector<Job> jobs = plan_comparison(options.comparison, {"command line"});
+  const Yardstick yardstick = read_yardstick(options.comparison, {"command line"});
   prepare_outputs(options);
+  const EngineKind asked = jobs.empty() ? EngineKind::automatic : jobs.front().spec.engine.kind;
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<RunResult> results = run_batch(std::move(jobs), options.jobs, session.quiet);
+  const std::vector<RunResult> results = run_with_yardstick(std::move(jobs), yardstick, options.jobs, session.quiet);
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_table(options, results, format);
+  print_table(options, results, format, yardstick);
   std::vector<std::string> written;
   if (!options.output.empty()) written.push_back(options.output);
   if (!options.plot_folder.empty()) {
@@ -62,6 +68,7 @@ void compare(const CompareOptions& options, const Session& session) {
   }
   if (session.quiet) return;
   std::fflush(stdout);
+  note_left_out(asked, results);
   for (const std::string& path : written) fmt::print(stderr, "wrote {}\n", path);
   fmt::print(stderr, "{} runs took {:.1f} s\n", results.size(), took_s);
 }

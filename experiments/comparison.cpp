@@ -1,5 +1,7 @@
 #include "experiments/comparison.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "policies/registry.h"
@@ -53,7 +55,20 @@ void add_comparison_options(CLI::App& app, ComparisonOptions& options) {
                  "(default: the first of each scene's list)")
       ->type_name("LIST")
       ->allow_extra_args(false);
+  app.add_option("--yardstick", options.yardstick,
+                 "What each run is set beside: none; bound: the upper bound on every frame's benefit; least: also the least "
+                 "error that scene and target allow; parts: also what estimator, planner and selection each add to it")
+      ->type_name("NAME")
+      ->capture_default_str();
   add_shared_options(app, options.shared);
+}
+
+Yardstick read_yardstick(const ComparisonOptions& options, const InputLocation& where) {
+  for (std::size_t i = 0; i < kYardstickNames.size(); ++i) {
+    if (kYardstickNames[i] == options.yardstick) return static_cast<Yardstick>(i);
+  }
+  throw InputError(where, fmt::format("--yardstick: '{}' is unknown; allowed: {}", options.yardstick,
+                                      fmt::join(kYardstickNames, ", ")));
 }
 
 std::vector<Job> plan_comparison(const ComparisonOptions& options, const InputLocation& where) {

@@ -61,21 +61,33 @@ std::string names_of(const Plan& plan, bool force_inert, auto&& wanted) {
   return names;
 }
 
-std::string engine_text(const Plan& plan) {
-  const auto name = kEngineKindNames[static_cast<std::size_t>(plan.engine)];
-  const std::string_view asked = plan.asked == EngineKind::automatic ? "" : "asked for; ";
-  switch (plan.engine) {
+std::string_view name_of(EngineKind kind) { return kEngineKindNames[static_cast<std::size_t>(kind)]; }
+
+// Why the engine that is exact for the run is the one that it is.
+std::string why_exact(const Plan& plan, bool force_inert) {
+  const std::string overlap = to_string(plan.overlap);
+  const std::string need = names_of(plan, force_inert, [](const Plan::EffectState& e) { return e.needs_events; });
+  switch (plan.exact) {
     case EngineKind::closed_form:
-      return fmt::format("{}: {}overlap {} is one formula a frame", name, asked, to_string(plan.overlap));
+      return fmt::format("overlap {} is one formula a frame", overlap);
     case EngineKind::events:
-      return fmt::format("{}: {}exact for all active effects, overlap {}; the recurrence gives the same times sooner",
-                         name, asked, to_string(plan.overlap));
+      return fmt::format("exact for all active effects, overlap {}; needed for {}", overlap, need);
     case EngineKind::recurrence:
     case EngineKind::automatic:
       break;
   }
-  return fmt::format("{}: {}exact for all active effects, overlap {}; one pass over the commands", name, asked,
-                     to_string(plan.overlap));
+  return fmt::format("exact for all active effects, overlap {}; one pass over the commands", overlap);
+}
+
+std::string engine_text(const Plan& plan, bool force_inert) {
+  const std::string_view asked = plan.asked == EngineKind::automatic ? "" : "asked for; ";
+  const std::string exact = why_exact(plan, force_inert);
+  if (plan.engine == plan.exact) return fmt::format("{}: {}{}", name_of(plan.engine), asked, exact);
+  if (!plan.parts.left_out.empty()) {
+    return fmt::format("{}: {}not exact, as {} would be ({})", name_of(plan.engine), asked, name_of(plan.exact), exact);
+  }
+  return fmt::format("{}: {}exact for all active effects, overlap {}; the {} gives the same times sooner",
+                     name_of(plan.engine), asked, to_string(plan.overlap), name_of(plan.exact));
 }
 
 std::string effect_text(const Plan::EffectState& effect, bool force_inert) {
@@ -110,7 +122,8 @@ std::string describe_plan(const Plan& plan, bool force_inert) {
   line("scene", parts.title.empty() ? parts.scene : fmt::format("{}: {}", parts.scene, parts.title));
   line("machine", parts.machine);
   line("policy", fmt::format("{}, planner {}, estimator {}", parts.policy, parts.planner, parts.estimator));
-  line("engine", engine_text(plan));
+  line("engine", engine_text(plan, force_inert));
+  for (const std::string& loss : parts.left_out) line("leaves out", loss);
   text += "effects, in the order in which they apply\n";
   for (const Plan::EffectState& effect : plan.effects) row(effect.name, effect_text(effect, force_inert));
   text += "hooks\n";
@@ -154,7 +167,8 @@ void add_explain(CLI::App& app, Session&) {
       "Examples:\n"
       "  framesim explain street\n"
       "  framesim explain street --policy distance --effect vsync:rate=60Hz --effect jitter\n"
-      "  framesim explain auditorium --overlap serial --effect frames-in-flight:n=2");
+      "  framesim explain auditorium --overlap serial --effect frames-in-flight:n=2\n"
+      "  framesim explain dong-forest --effect streaming:memory=16 --fidelity recurrence");
   verb->callback([options] { explain(*options); });
 }
 

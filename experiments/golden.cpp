@@ -160,7 +160,9 @@ GoldenCheck check_golden_table(const std::string& path, int threads, bool quiet)
   const InputLocation where{path, 1};
   const std::string first = lines.empty() ? "" : lines.front();
   const Table expected = read_table(lines, path);
-  std::vector<RunResult> results = run_batch(plan_comparison(read_arguments(first, where), where), threads, quiet);
+  const ComparisonOptions options = read_arguments(first, where);
+  const std::vector<RunResult> results =
+      run_with_yardstick(plan_comparison(options, where), read_yardstick(options, where), threads, quiet);
   Table found{csv_table_header(), {}};
   for (const RunResult& result : results) found.rows.push_back(csv_table_row(result));
   return {path, found.rows.size(), expected.header.empty(), compare_tables(expected, found),

@@ -82,6 +82,7 @@ int run_program(int argc, char** argv) {
   framesim::add_compare(app, session);
   framesim::add_explain(app, session);
   framesim::add_check(app, session);
+  framesim::add_tradeoff(app, session);
   app.footer(
       "Examples:\n"
       "  framesim compare\n"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
@@ -49,6 +50,18 @@ bool continues_spec(std::string_view piece) {
 }
 
 }  // namespace
+
+void note_left_out(EngineKind asked, std::span<const RunResult> results) {
+  std::vector<std::string> noted;
+  for (const RunResult& result : results) {
+    if (result.left_out.empty()) continue;
+    std::string losses = fmt::format("{}", fmt::join(result.left_out, "; "));
+    if (std::find(noted.begin(), noted.end(), losses) != noted.end()) continue;
+    fmt::print(stderr, "framesim: note: --fidelity {} leaves out: {}\n",
+               kEngineKindNames[static_cast<std::size_t>(asked)], losses);
+    noted.push_back(std::move(losses));
+  }
+}
 
 std::vector<std::string> split_list(const std::vector<std::string>& texts, const InputLocation& where) {
   std::vector<std::string> pieces;
@@ -121,8 +134,9 @@ void add_shared_options(CLI::App& app, SharedOptions& options) {
       ->capture_default_str();
   app.add_option(
          "--fidelity", options.fidelity,
-         "How frame times are computed: auto, recurrence (exact), events (the same through an event queue, slow), "
-         "closed-form (one formula a frame)")
+         "How frame times are computed: auto (the cheapest that is exact), recurrence (one pass over the commands), "
+         "events (an event queue: the same, and alone exact for streaming and preemption), closed-form (one formula a "
+         "frame). One that is not exact says what it leaves out; see 'framesim explain'")
       ->type_name("NAME")
       ->capture_default_str();
   app.add_flag("--verify", options.verify, "Check every selection of every frame against the rules (slow)");

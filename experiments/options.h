@@ -3,6 +3,7 @@
 // messages.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ void add_quiet_option(CLI::App& app, bool& quiet);
 
 // A RunSpec without scene, policy and target. Throws InputError at `where` for a word that cannot be taken.
 RunSpec read_shared(const SharedOptions& options, const InputLocation& where);
+
+// One line on stderr for each different thing that an engine asked for leaves out of these runs; nothing where it is
+// exact.
+void note_left_out(EngineKind asked, std::span<const RunResult> results);
 
 // Commas separate specs, except that a piece of the form key=value (no ':' before the '=') belongs to the spec before
 // it: "distance,robin-hood:value=8,levels=no,static" is three specs. Texts are read in order.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/run_effects.h"
+#include "experiments/run_parts.h"
 #include "policies/registry.h"
 #include "scenes/machine_file.h"
 #include "scenes/registry.h"
@@ -12,18 +13,6 @@
 #include "sim/simulation.h"
 
 namespace framesim {
-namespace {
-
-// Everything a run is made of, with the names it was made from.
-struct Parts {
-  std::unique_ptr<Machine> machine;
-  std::unique_ptr<Policy> policy;
-  std::unique_ptr<Planner> planner;
-  std::unique_ptr<Estimator> estimator;
-  std::unique_ptr<WorkloadSource> source;
-  std::vector<DeclaredEffect> effects;
-  std::string planner_name;
-};
 
 MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
   MachineProfile profile = spec.machine ? load_machine(*spec.machine) : scene.machine;
@@ -31,24 +20,26 @@ MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene) {
     if (const auto missing = missing_costs(scene, profile)) throw InputError(spec.machine->where, *missing);
   }
   if (spec.overlap) profile.overlap = *spec.overlap;
+  if (spec.free_decisions) profile.operation_s = 0;
   return profile;
 }
 
-// A staged overlap has no closed form, and the closed forms have no stages.
-void check_fidelity(const RunSpec& spec, const MachineProfile& machine) {
-  const bool staged = machine.overlap.kind == OverlapKind::staged;
-  if (spec.engine.kind == EngineKind::automatic || (spec.engine.kind == EngineKind::closed_form) != staged) return;
-  throw InputError(spec.policy.where,
-                   fmt::format("--fidelity {} does not go with overlap '{}'; allowed: {}",
-                               staged ? "closed-form" : "recurrence or events", to_string(machine.overlap),
-                               staged ? "auto, recurrence, events, or an --overlap serial, paper2005, max-plus-s:S"
-                                      : "auto, closed-form, or an --overlap staged, staged:N"));
+namespace {
+
+// Whether the effect alone makes the machine one that only the event engine simulates.
+bool needs_events(const Effect& effect, MachineProfile machine) {
+  if (!has(effect.hooks(), Hook::machine)) return false;
+  machine.bus = {};
+  machine.client = {};
+  effect.on_machine(machine);
+  return exact_engine(machine) == EngineKind::events;
 }
+
+}  // namespace
 
 Parts make_parts(const RunSpec& spec, const Scene& scene) {
   Parts parts;
   MachineProfile machine = resolve_machine(spec, scene);
-  check_fidelity(spec, machine);
   parts.source = make_workload_source(scene);
   parts.effects = declare_effects(spec, scene, parts.source->scene(), machine);
   parts.machine = std::make_unique<Machine>(std::move(machine));
@@ -86,10 +77,15 @@ RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts) 
       result.inert_effects.push_back({to_string(declared.spec), *declared.inert});
     }
   }
+  if (spec.engine.kind != EngineKind::automatic) {
+    result.left_out = left_out(spec.engine.kind, parts.machine->profile());
+  }
   result.target_s = spec.target_s;
   result.seed = spec.seed;
   return result;
 }
+
+namespace {
 
 // Frame 0 fills the pipeline; it counts only while it is the only one.
 void note_slowest(const Simulation& simulation, const RunSpec& spec, RunResult& result) {
@@ -112,7 +108,8 @@ Plan plan(const RunSpec& spec, const Scene& scene) {
             .policy = parts.policy->traits(),
             .overlap = machine.overlap,
             .asked = spec.engine.kind,
-            .engine = make_engine(machine, spec.engine)->kind()};
+            .engine = make_engine(machine, spec.engine)->kind(),
+            .exact = exact_engine(machine)};
   for (const EffectEntry& entry : effects()) {
     Plan::EffectState state{.name = std::string(entry.name)};
     for (const DeclaredEffect& declared : parts.effects) {
@@ -121,6 +118,7 @@ Plan plan(const RunSpec& spec, const Scene& scene) {
       state.inert = declared.inert;
       state.hooks = declared.effect->hooks();
       state.columns = declared.effect->columns();
+      state.needs_events = declared.runs && needs_events(*declared.effect, machine);
     }
     plan.effects.push_back(std::move(state));
   }
@@ -134,6 +132,7 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
 
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
   const Parts parts = make_parts(spec, scene);
+  RunResult result = describe(spec, scene, parts);
   Simulation simulation({.scene = *parts.source,
                          .policy = *parts.policy,
                          .planner = *parts.planner,
@@ -141,8 +140,11 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
                          .machine = *parts.machine,
                          .logic = scene.logic,
                          .effects = running(parts.effects)},
-                        {.target_s = spec.target_s, .engine = spec.engine, .check_selections = spec.verify});
-  RunResult result = describe(spec, scene, parts);
+                        {.target_s = spec.target_s,
+                         .engine = spec.engine,
+                         .bound = spec.bound,
+                         .check_selections = spec.verify,
+                         .profile = spec.profile ? &result.profile : nullptr});
   const std::int64_t frames = frames_to_run(spec, scene);
   result.records.reserve(static_cast<std::size_t>(frames));
   for (std::int64_t frame = 0; frame < frames; ++frame) {
@@ -152,6 +154,7 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
   }
   result.summary = summarise(result.records, spec.target_s);
   result.records_hash = hash(result.records);
+  result.benchmark_draws = parts.machine->benchmark_draws();
   return result;
 }
 

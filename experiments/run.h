@@ -36,7 +36,10 @@ struct RunSpec {
   std::uint64_t seed = 1;
   std::int64_t frames = 0;  // at most so many; 0 = the whole camera path
   EngineOptions engine;
-  bool verify = false;       // check every selection against the rules (slow)
+  bool free_decisions = false;  // the simulated machine charges nothing for a policy's operations
+  bool bound = false;           // find the upper bound on each frame's benefit
+  bool profile = false;         // measure where the host's time goes: RunResult::profile
+  bool verify = false;          // check every selection against the rules (slow)
   bool force_inert = false;  // run inert effects too instead of leaving them out: for tests, since it changes nothing
 };
 
@@ -50,13 +53,16 @@ struct RunResult {
   std::string scene, title, policy, machine, machine_source, overlap, planner, estimator;
   std::vector<std::string> effects;        // those that ran, in the order in which they apply
   std::vector<InertEffect> inert_effects;  // those that were left out
+  std::vector<std::string> left_out;       // what the engine asked for leaves out; empty where it is exact
   double target_s = 0;
   std::uint64_t seed = 0;
   Summary summary;
-  std::int64_t slowest_frame = 0;           // frame 0, which fills the pipeline, left out
-  Simulation::CriticalPath slowest_path;    // ... and its critical path; empty unless the engine traces it
+  std::int64_t slowest_frame = 0;         // frame 0, which fills the pipeline, left out
+  Simulation::CriticalPath slowest_path;  // ... and its critical path; empty unless the engine traces it
   std::vector<FrameRecord> records;
   std::uint64_t records_hash = 0;
+  std::int64_t benchmark_draws = 0;  // by the estimator, before the first frame
+  StepProfile profile;               // if asked for; measured, so it differs from run to run
 };
 
 // What a run would do, without running a frame: for `framesim explain`.
@@ -67,12 +73,14 @@ struct Plan {
     std::optional<std::string> inert;     // declared: why it cannot change this run
     Hook hooks{};                         // declared: where it acts
     Columns columns = Columns::none;      // declared: workload columns that it reads
+    bool needs_events = false;            // it runs, and no other engine is exact with it
   };
   RunResult parts;                   // names of all parts; no records
   std::vector<EffectState> effects;  // every registered one, in the order in which they apply
   PolicyTraits policy;
   Overlap overlap;
   EngineKind asked = EngineKind::automatic, engine = EngineKind::automatic;
+  EngineKind exact = EngineKind::automatic;  // the cheapest that leaves nothing out (RunResult::left_out)
 };
 Plan plan(const RunSpec& spec, const Scene& scene);
 

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <memory>
 
 #include "experiments/gnuplot.h"
@@ -11,15 +14,18 @@
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
 #include "experiments/progress.h"
+#include "experiments/seeds.h"
 #include "experiments/table.h"
 #include "experiments/verbs.h"
 #include "scenes/registry.h"
+#include "sim/quantity.h"
 
 namespace framesim {
 namespace {
 
 struct RunOptions {
-  std::string scene, policy, target, frames_out, plot_folder;
+  std::string scene, policy, target, frames_out, plot_folder, seeds, seeds_out;
+  bool profile = false;
   SharedOptions shared;
 };
 
@@ -30,7 +36,8 @@ RunSpec read_spec(const RunOptions& options) {
   spec.scene = parse_spec(options.scene, kCommandLine);
   spec.policy = parse_spec(options.policy, kCommandLine);
   if (!options.target.empty()) spec.target_s = read_target_s(options.target, kCommandLine);
-  spec.engine.critical_path = true;
+  spec.profile = options.profile;
+  spec.engine.critical_path = !options.profile;  // tracing it would be in the profile
   return spec;
 }
 
@@ -66,7 +73,7 @@ std::string critical_path(const RunResult& result) {
       sums[i] += static_cast<double>(record.*kCriticalParts[i].time_ps);
   }
   for (const double sum : sums) total += sum;
-  if (total <= 0) return "NA (only --fidelity recurrence traces it)";
+  if (total <= 0) return "NA (traced by the recurrence only, and not with --profile)";
   std::string text;
   for (std::size_t i = 0; i < kCriticalParts.size(); ++i) {
     if (sums[i] <= 0) continue;
@@ -88,7 +95,8 @@ std::string slowest(const RunResult& r) {
     text += fmt::format("{}{} {:.3f}", separator, step.name, ms_of(step.time));
     separator = " > ";
   }
-  if (r.slowest_path.backlog.count() > 0) text += fmt::format("; behind earlier frames {:.3f}", ms_of(r.slowest_path.backlog));
+  if (r.slowest_path.backlog.count() > 0)
+    text += fmt::format("; behind earlier frames {:.3f}", ms_of(r.slowest_path.backlog));
   return text;
 }
 
@@ -100,6 +108,27 @@ std::string effects_text(const RunResult& r) {
 }
 
 std::string ms(double seconds) { return fmt::format("{:.3f} ms", seconds * 1e3); }
+
+double mean_of(const RunResult& result, std::int64_t FrameRecord::*column) {
+  double sum = 0;
+  for (const FrameRecord& record : result.records) sum += static_cast<double>(record.*column);
+  return sum / static_cast<double>(std::max<std::size_t>(1, result.records.size()));
+}
+
+// What the effects of shared hardware did, a line each; nothing where none of them ran.
+std::string describe_sharing(const RunResult& r) {
+  std::string text;
+  const double bytes = mean_of(r, &FrameRecord::upload_bytes), waited_ps = mean_of(r, &FrameRecord::bus_wait_ps);
+  const double preempted_ps = mean_of(r, &FrameRecord::preempted_ps);
+  if (bytes + waited_ps > 0) {
+    text += fmt::format("{:<14} {:.4g} MB uploaded and {} waited for the bus a frame\n", "streaming", bytes * 1e-6,
+                        ms(waited_ps * 1e-12));
+  }
+  if (preempted_ps > 0) {
+    text += fmt::format("{:<14} another client held the GPU for {} a frame\n", "preemption", ms(preempted_ps * 1e-12));
+  }
+  return text;
+}
 
 std::string describe_run(const RunResult& r) {
   const Summary& s = r.summary;
@@ -125,9 +154,35 @@ std::string describe_run(const RunResult& r) {
                               s.benefit_share * 100, s.switches));
   line("decision",
        fmt::format("{:.1f} operations a frame; estimator error {:.2f} %", s.operations, s.estimator_error * 100));
+  text += describe_sharing(r);
   line("critical path", critical_path(r));
   line("slowest", slowest(r));
   return text;
+}
+
+// The parts of a step on this host, in step order, their sum, and the whole step by a clock of its own.
+std::string describe_profile(const StepProfile& profile, double visible) {
+  std::string text =
+      fmt::format("\n{:<26} {:>12} {:>8} {:>16}\n", "time on this host", "us a frame", "share", "ns/visible item");
+  const auto row = [&](std::string_view name, std::int64_t ns) {
+    const double a_frame = static_cast<double>(ns) / static_cast<double>(profile.frames);
+    text += fmt::format("{:<26} {:>12.2f} {:>6.1f} % {:>16.2f}\n", name, a_frame * 1e-3,
+                        100 * static_cast<double>(ns) / static_cast<double>(profile.total_ns), a_frame / visible);
+  };
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < kStepParts; ++i) {
+    row(kStepPartNames[i], profile.part_ns[i]);
+    sum += profile.part_ns[i];
+  }
+  row("sum of the parts", sum);
+  row("whole step", profile.total_ns);
+  return text;
+}
+
+double mean_visible(const RunResult& result) {
+  double visible = 0;
+  for (const FrameRecord& record : result.records) visible += static_cast<double>(record.visible);
+  return std::max(1.0, visible) / static_cast<double>(result.records.size());
 }
 
 void run_one(const RunOptions& options, const Session& session) {
@@ -149,12 +204,65 @@ void run_one(const RunOptions& options, const Session& session) {
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.frames_out.empty()) write_file(options.frames_out, frames_csv(result));
   fmt::print("{}", describe_run(result));
+  if (options.profile) fmt::print("{}", describe_profile(result.profile, mean_visible(result)));
   if (options.plot_folder.empty() && session.quiet) return;
   std::vector<std::string> pictures;
   if (!options.plot_folder.empty()) pictures = write_plots({&result, 1}, options.plot_folder);
   if (session.quiet) return;
+  std::fflush(stdout);
+  note_left_out(spec.engine.kind, {&result, 1});
   for (const std::string& path : pictures) fmt::print(stderr, "wrote {}\n", path);
   fmt::print(stderr, "took {:.2f} s, {:.0f} frames/s\n", took_s, static_cast<double>(result.records.size()) / took_s);
+}
+
+// --seeds N: 1 to kMostSeeds, none of them past the largest seed.
+std::int64_t read_seeds(const std::string& text, std::uint64_t first) {
+  const QuantityResult count = parse_number(text);
+  const bool whole =
+      count.value && *count.value >= 1 && *count.value <= kMostSeeds && *count.value == std::floor(*count.value);
+  if (!whole) {
+    throw InputError(kCommandLine,
+                     fmt::format("--seeds: '{}' is not a number of seeds; allowed: 1 to {}", text, kMostSeeds));
+  }
+  const auto seeds = static_cast<std::int64_t>(*count.value);
+  if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(seeds - 1)) {
+    throw InputError(kCommandLine, fmt::format("--seeds: {} seeds from {} pass the largest one", seeds, first));
+  }
+  return seeds;
+}
+
+void refuse_with_seeds(const RunOptions& options) {
+  const std::pair<const char*, bool> for_one[] = {{"--frames-out", !options.frames_out.empty()},
+                                                  {"--plot", !options.plot_folder.empty()},
+                                                  {"--profile", options.profile}};
+  for (const auto& [name, given] : for_one) {
+    if (given) throw InputError(kCommandLine, fmt::format("{} is about one run and does not go with --seeds", name));
+  }
+}
+
+void run_many(const RunOptions& options, const Session& session) {
+  refuse_with_seeds(options);
+  RunSpec spec = read_spec(options);
+  spec.engine.critical_path = false;  // nothing of it is shown, and eight seeds at a time do not trace it
+  const std::int64_t seeds = read_seeds(options.seeds, spec.seed);
+  if (!options.seeds_out.empty()) check_writable(options.seeds_out);
+  const Scene scene = load_scene(spec.scene);
+  if (spec.target_s == 0) spec.target_s = scene.targets_s.front();
+  check_parts(spec, scene);
+  const auto start = std::chrono::steady_clock::now();
+  SeedRuns runs;
+  {
+    Progress progress("frames", frames_to_run(spec, scene) * seeds, session.quiet);
+    runs = run_seeds(spec, scene, seeds, [&] { progress.advance(); });
+  }
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!options.seeds_out.empty()) write_file(options.seeds_out, seeds_csv(runs));
+  fmt::print("{}", format_seeds(runs));
+  if (session.quiet) return;
+  std::fflush(stdout);
+  note_left_out(spec.engine.kind, {&runs.parts, 1});
+  const double frames = static_cast<double>(frames_to_run(spec, scene) * seeds);
+  fmt::print(stderr, "{}\ntook {:.2f} s, {:.0f} frames/s\n", describe_way(runs), took_s, frames / took_s);
 }
 
 }  // namespace
@@ -175,6 +283,13 @@ void add_run(CLI::App& app, Session& session) {
       ->type_name("TIME");
   add_shared_options(*verb, options->shared);
   verb->add_option("--frames-out", options->frames_out, "Write one row a frame to this CSV file")->type_name("FILE");
+  verb->add_option("--seeds", options->seeds, "Run N seeds from --seed up, and say how the figures spread over them")
+      ->type_name("N");
+  verb->add_option("--seeds-out", options->seeds_out, "With --seeds: write one row a seed to this CSV file")
+      ->type_name("FILE")
+      ->needs("--seeds");
+  verb->add_flag("--profile", options->profile,
+                 "Add where this host's time went, part by part of a step; replaces the critical path");
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
   add_quiet_option(*verb, session.quiet);
@@ -183,8 +298,10 @@ void add_run(CLI::App& app, Session& session) {
       "  framesim run street --policy robin-hood --target 25ms\n"
       "  framesim run graphicon-forest --policy robin-hood:levels=no --target 60fps --estimator table --frames-out "
       "f.csv\n"
+      "  framesim run street --policy robin-hood --effect jitter:sigma=0.2 --seeds 64\n"
       "  framesim run my/scene.toml --policy funkhouser --target 40ms --overlap staged:2 --plot pictures");
-  verb->callback([options, &session] { run_one(*options, session); });
+  verb->callback(
+      [options, &session] { options->seeds.empty() ? run_one(*options, session) : run_many(*options, session); });
 }
 
 }  // namespace framesim

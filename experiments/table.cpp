@@ -15,7 +15,10 @@ namespace {
 
 bool is_share(const SummaryColumn& column) {
   static constexpr std::array kShares = {&Summary::avg_err, &Summary::bias, &Summary::over_target,
-                                         &Summary::benefit_share, &Summary::estimator_error};
+                                         &Summary::benefit_share, &Summary::bound_share,
+                                         &Summary::over_budget,   &Summary::estimator_error,
+                                         &Summary::err_estimator, &Summary::err_planner,
+                                         &Summary::err_selection};
   return std::find(kShares.begin(), kShares.end(), column.value) != kShares.end();
 }
 
@@ -115,7 +118,10 @@ std::vector<std::string> csv_table_header() {
 
 std::vector<std::string> csv_table_row(const RunResult& result) {
   std::vector<std::string> row = {result.scene, result.policy, fmt::format("{}", result.target_s)};
-  for (const SummaryColumn& column : summary_columns()) row.push_back(fmt::format("{}", result.summary.*column.value));
+  for (const SummaryColumn& column : summary_columns()) {
+    const double value = result.summary.*column.value;
+    row.push_back(std::isnan(value) ? "NA" : fmt::format("{}", value));
+  }
   row.push_back(fmt::format("{:016x}", result.records_hash));
   return row;
 }
@@ -124,6 +130,7 @@ std::string show_cell(const SummaryColumn& column, const Summary& summary) {
   const double value = summary.*column.value;
   if (!std::isfinite(value)) return "NA";
   const double shown = column.unit == "s" ? value * 1e3 : is_share(column) ? value * 100 : value;
+  if (column.value == &Summary::ngap) return fmt::format("{:.2g}", value);
   if (column.value == &Summary::frames) return fmt::format("{:.0f}", shown);
   const double size = std::abs(shown);
   // Two decimals for times, one for shares and counts; fewer where they would not matter.
@@ -144,6 +151,9 @@ std::string show_heading(const SummaryColumn& column) {
   if (column.value == &Summary::avg_err) return "AvgErr";
   if (column.value == &Summary::over_target) return "over";
   if (column.value == &Summary::benefit_share) return "benefit";
+  if (column.value == &Summary::err_over_least) return "x least";
+  if (column.value == &Summary::bound_share) return "of bound";
+  if (column.value == &Summary::over_budget) return "overdrawn";
   if (column.value == &Summary::estimator_error) return "est.err";
   std::string name(column.name);
   if (name.ends_with("_s")) name.resize(name.size() - 2);

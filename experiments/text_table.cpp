@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "experiments/blocks.h"
 #include "experiments/table.h"
@@ -68,7 +69,12 @@ std::string block_title(const RunResult& r) {
   return title + '\n';
 }
 
-bool in_text_table(const SummaryColumn& column) { return column.value != &Summary::frames; }
+// The title has the frames, and format_error_parts() the parts of the error.
+bool in_text_table(const SummaryColumn& column) {
+  static constexpr std::array kElsewhere = {&Summary::frames, &Summary::err_estimator, &Summary::err_planner,
+                                            &Summary::err_selection, &Summary::over_budget};
+  return std::find(kElsewhere.begin(), kElsewhere.end(), column.value) == kElsewhere.end();
+}
 
 Cell holds_cell(const RunResult& r) {
   return holds(r) ? Cell{"yes", kGreen} : Cell{fmt::format("NO {:.2f}x", r.summary.p95_s / r.target_s), kRed};

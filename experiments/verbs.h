@@ -18,5 +18,6 @@ void add_run(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
+void add_tradeoff(CLI::App& app, Session& session);
 
 }  // namespace framesim

@@ -40,7 +40,9 @@ class FeedbackPolicy : public Policy {
   explicit FeedbackPolicy(const FeedbackParameters& parameters) : parameters_(parameters) {}
 
   PolicyTraits traits() const override {
-    return {.request = {.columns = Columns::cost}, .operation = "level compared with the size threshold"};
+    return {.request = {.columns = Columns::cost},
+            .uses_feedback = true,
+            .operation = "level compared with the size threshold"};
   }
 
   void prepare(const PolicyScene&) override { set_threshold(parameters_.start); }

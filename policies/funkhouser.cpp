@@ -14,8 +14,12 @@
 //   repaired     From scratch on each object's upper concave hull (knapsack/hull_greedy.h): upgrades by falling gain / extra
 //                cost, misfits skipped, the best single upgrade compared, what is left given to any level that fits.
 //                At least half of the optimum. O(levels + n log n).
+//   stop-at-misfit  The same upgrades until the first that does not fit, and nothing after it, as renderers do [M]:
+//                with misfits skipped, what small upgrades find left over changes with every step of the camera, and
+//                their levels with it. What is drawn is the first part of one sequence: as long as the same objects
+//                must be drawn, more budget lowers no level. No bound from below: one dear upgrade ends it for all.
 // Omitting:      with `none=true` "not drawn" is a level like others. Otherwise every object gets at least its coarsest
-//                level (`repaired`: its cheapest) if these fit together; if not, objects may be left out in that frame.
+//                level (on hulls: its cheapest) if these fit together; if not, objects may be left out in that frame.
 // Known failure: `printed` and `incremental` have no bound: A = {(9,14),(12,18)}, B = {(36,81)} as (cost, benefit) and budget 20
 //                draw nothing, because B is first and does not fit, where A alone gives 18.
 #include <algorithm>
@@ -28,7 +32,7 @@
 namespace framesim {
 namespace {
 
-enum Rule { kRepaired, kIncremental, kPrinted };
+enum Rule { kRepaired, kIncremental, kPrinted, kStopAtMisfit };
 enum Misfit { kStop, kSkip };
 
 struct FunkhouserParameters {
@@ -40,8 +44,9 @@ struct FunkhouserParameters {
 const ParameterTable<FunkhouserParameters> kParameters{{
     {"rule",
      &FunkhouserParameters::rule,
-     {.help = "greedy on upper hulls with a guarantee, the paper's incremental rule, or its rule from scratch",
-      .words = {"repaired", "incremental", "printed"}}},
+     {.help = "greedy on upper hulls with a guarantee, the paper's incremental rule, its rule from scratch, or the "
+              "upper hulls until the first misfit",
+      .words = {"repaired", "incremental", "printed", "stop-at-misfit"}}},
     {"misfit",
      &FunkhouserParameters::misfit,
      {.help = "rule=printed: what the first tuple that does not fit does", .words = {"stop", "skip"}}},
@@ -70,7 +75,8 @@ class FunkhouserPolicy : public Policy {
     choice_ = LevelChoice(context.workload, context.budget_s, selection);
     switch (parameters_.rule) {
       case kRepaired:
-        select_repaired(selection);
+      case kStopAtMisfit:
+        select_on_hulls(selection);
         break;
       case kIncremental:
         select_incremental(context.frame);
@@ -92,10 +98,12 @@ class FunkhouserPolicy : public Policy {
 
   double value(std::size_t item, int level) const { return choice_.benefit(item, level) / choice_.cost_s(item, level); }
 
-  // The coarsest level; for `repaired` the one that costs least (of equals the most beneficial, then the coarsest).
+  bool on_hulls() const { return parameters_.rule == kRepaired || parameters_.rule == kStopAtMisfit; }
+
+  // The coarsest level; on hulls the one that costs least (of equals the most beneficial, then the coarsest).
   int lowest_level(std::size_t item) const {
     int lowest = 0;
-    if (parameters_.rule != kRepaired) return lowest;
+    if (!on_hulls()) return lowest;
     for (int l = 1; l < choice_.levels(item); ++l) {
       const std::pair candidate{choice_.cost_s(item, l), -choice_.benefit(item, l)};
       if (candidate < std::pair{choice_.cost_s(item, lowest), -choice_.benefit(item, lowest)}) lowest = l;
@@ -120,10 +128,11 @@ class FunkhouserPolicy : public Policy {
     }
   }
 
-  void select_repaired(Selection& selection) {
+  void select_on_hulls(Selection& selection) {
     const bool everything = all_drawn();
     if (everything) draw_lowest();
-    const double bound = hull_greedy_.improve(choice_);
+    const double bound =
+        parameters_.rule == kStopAtMisfit ? hull_greedy_.improve_until_misfit(choice_) : hull_greedy_.improve(choice_);
     // A bound on those who draw everything would be none for those who may omit.
     if (!everything) selection.bound = std::max(bound, selected_benefit(choice_.workload(), selection));
   }

@@ -9,14 +9,15 @@ namespace framesim {
 
 // If the selection's cost exceeds `budget_s`, lowers the resolution of the dearest drawn item for which
 // `may_shrink(item)` holds until it does not. Meant for an excess of a few rounding errors: one item is enough. Stops
-// short, over budget, where no drawn item may shrink. Returns the number of items looked at.
+// short, over budget, where no drawn item may shrink. Fills the plan's sums. Returns the number of items looked at.
 template <class MayShrink>
 std::int64_t keep_budget(const Workload& workload, double budget_s, Selection& selection, MayShrink may_shrink) {
   std::int64_t looked_at = 0;
+  SelectedSums sums = selected_sums(workload, selection);
   // Each round takes off twice as much as the last beyond the excess, since taking off rounds too.
   for (double slack = 1; slack < 1e6; slack *= 2) {
     looked_at += static_cast<std::int64_t>(workload.size());
-    const double excess_s = selected_cost_s(workload, selection) - budget_s;
+    const double excess_s = sums.cost_s - budget_s;
     if (!(excess_s > 0)) break;
     std::size_t dearest = workload.size();
     double dearest_cost_s = 0;
@@ -37,10 +38,14 @@ std::int64_t keep_budget(const Workload& workload, double budget_s, Selection& s
     } else {
       resolution *= left_s > 0 ? left_s / dearest_cost_s : 0;
     }
-    if (resolution > 0) continue;
-    resolution = 0;
-    selection.level[dearest] = kNotDrawn;
+    if (!(resolution > 0)) {
+      resolution = 0;
+      selection.level[dearest] = kNotDrawn;
+    }
+    sums = selected_sums(workload, selection);
   }
+  selection.planned_cost_s = sums.cost_s;
+  selection.planned_benefit = sums.benefit;
   return looked_at;
 }
 

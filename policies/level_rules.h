@@ -47,8 +47,9 @@ inline void draw(Selection& selection, std::size_t item, std::size_t level) {
 
 // Fills the plan's sums from what is drawn.
 inline void finish_plan(const Workload& workload, Selection& selection) {
-  selection.planned_cost_s = selected_cost_s(workload, selection);
-  selection.planned_benefit = selected_benefit(workload, selection);
+  const SelectedSums sums = selected_sums(workload, selection);
+  selection.planned_cost_s = sums.cost_s;
+  selection.planned_benefit = sums.benefit;
 }
 
 }  // namespace framesim

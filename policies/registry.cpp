@@ -11,11 +11,19 @@ namespace framesim {
   policy(static_policy)           \
   policy(distance_policy)         \
   policy(feedback_policy)         \
+  policy(pid_policy)              \
   policy(funkhouser_policy)       \
   policy(robin_hood_policy)       \
+  policy(proportional_policy)     \
+  policy(lagrange_policy)         \
+  policy(active_set_policy)       \
   policy(mixed_gradient_policy)   \
   policy(importance_adjust_policy) \
-  policy(contribution_halving_policy)
+  policy(contribution_halving_policy) \
+  policy(hierarchical_policy)     \
+  policy(impostor_tree_policy)    \
+  policy(exact_policy)            \
+  policy(certified_policy)
 // clang-format on
 
 #define FRAMESIM_DECLARE(policy) PolicyEntry policy();

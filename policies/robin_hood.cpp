@@ -72,7 +72,8 @@ class RobinHoodPolicy : public Policy {
   explicit RobinHoodPolicy(const RobinHoodParameters& parameters) : parameters_(parameters) {}
 
   PolicyTraits traits() const override {
-    return {.request = {.curves = true, .columns = Columns::cost | Columns::depth | Columns::distance | Columns::area},
+    const Columns place = parameters_.value == kEquation11 ? Columns::distance : Columns::depth;
+    return {.request = {.curves = true, .columns = Columns::cost | Columns::area | place},
             .keeps_budget = true,
             .may_omit = true,
             .planner = parameters_.planning == kPaper ? "paper" : "inverse",
@@ -92,7 +93,7 @@ class RobinHoodPolicy : public Policy {
     const Workload& workload = context.workload;
     const double budget_s = std::clamp(context.budget_s, 0.0, kLongestBudget_s);
     order_by_complexity(workload);
-    value(workload);
+    sum_from_behind();
     selection.operations = 3 * static_cast<std::int64_t>(order_.size());
     if (parameters_.sums == kPrinted) {
       share_as_printed(workload, budget_s, selection);
@@ -100,23 +101,27 @@ class RobinHoodPolicy : public Policy {
       share(workload, budget_s, selection);
     }
     keep_budget(workload, budget_s, selection, [](std::size_t) { return true; });
-    finish_plan(workload, selection);
   }
 
  private:
-  // Items that can be drawn, by (complexity of their type, item): a stable counting sort.
+  // Items that can be drawn, and their values, by (complexity of their type, item): a stable counting sort. Values are
+  // computed where the items are met in order, since gathering would fetch each cache line once a type.
   void order_by_complexity(const Workload& workload) {
     first_.assign(rank_.size() + 1, 0);
     std::size_t drawable = 0;
     for (std::size_t i = 0; i < workload.size(); ++i) {
-      if (workload.levels(i) == 0) continue;
-      ++first_[rank_[index(workload.type[i])] + 1];
-      ++drawable;
+      const bool can_be_drawn = workload.levels(i) > 0;
+      first_[rank_[index(workload.type[i])] + 1] += can_be_drawn;
+      drawable += can_be_drawn;
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     order_.resize(drawable);
+    value_.resize(drawable);
     for (std::size_t i = 0; i < workload.size(); ++i) {
-      if (workload.levels(i) > 0) order_[first_[rank_[index(workload.type[i])]]++] = i;
+      if (workload.levels(i) == 0) continue;
+      const std::size_t k = first_[rank_[index(workload.type[i])]]++;
+      order_[k] = static_cast<std::uint32_t>(i);
+      value_[k] = value_of(workload, i);
     }
   }
 
@@ -124,24 +129,23 @@ class RobinHoodPolicy : public Policy {
   double value_of(const Workload& workload, std::size_t item) const {
     const double area = std::max(workload.area_m2[item], 0.0);
     const double importance = workload.type_of(item).importance;
+    if (parameters_.value == kEquation11) {
+      return std::sqrt(area) / std::max(workload.distance_m[item], parameters_.near_m) * importance;
+    }
     const double z = std::max(workload.depth_m[item], parameters_.near_m);
     switch (parameters_.value) {
-      case kEquation8:
-        return area * importance / std::sqrt(z);
       case kEquation9:
         return area * importance / z;
       case kEquation10:
         return area * importance / (z * z);
       default:
-        return std::sqrt(area) / std::max(workload.distance_m[item], parameters_.near_m) * importance;
+        return area * importance / std::sqrt(z);
     }
   }
 
-  // Values in traversal order and, for each place, the sum of the values from there on.
-  void value(const Workload& workload) {
+  // For each place, the sum of the values from there on.
+  void sum_from_behind() {
     const std::size_t n = order_.size();
-    value_.resize(n);
-    for (std::size_t k = 0; k < n; ++k) value_[k] = value_of(workload, order_[k]);
     suffix_.resize(n + 1);
     suffix_[n] = 0;
     CompensatedSum sum;
@@ -194,30 +198,42 @@ class RobinHoodPolicy : public Policy {
       selection.resolution[item] = x;
       return x < 1 ? 0 : std::max(0.0, share_s - curve_cost_s(workload, item, 1));
     }
-    const std::size_t finest = workload.finest(item);
-    std::size_t cheapest = finest;
-    for (std::size_t entry = finest + 1; entry-- > workload.level_begin[item];) {
-      ++selection.operations;
-      if (workload.cost_s[entry] <= share_s) {
-        draw(selection, item, entry - workload.level_begin[item]);
-        return share_s - workload.cost_s[entry];
-      }
-      if (!parameters_.levels) break;
-      if (workload.cost_s[entry] <= workload.cost_s[cheapest]) cheapest = entry;
+    const std::size_t levels = workload.levels(item);
+    const double* const cost_s = workload.cost_s.data() + workload.level_begin[item];
+    // The finest level that fits. All are looked at and none is a branch, since which it will be cannot be guessed;
+    // counted are those that a search from the finest down looks at.
+    std::size_t chosen = levels;
+    for (std::size_t l = parameters_.levels ? 0 : levels - 1; l < levels; ++l)
+      chosen = cost_s[l] <= share_s ? l : chosen;
+    if (chosen < levels) {
+      selection.operations += static_cast<std::int64_t>(levels - chosen);
+      draw(selection, item, chosen);
+      return share_s - cost_s[chosen];
     }
-    const double part = share_s / workload.cost_s[cheapest];
+    selection.operations += parameters_.levels ? static_cast<std::int64_t>(levels) : 1;
+    return spend_in_part(cost_s, levels, item, share_s, selection);
+  }
+
+  // No level fits: the cheapest, as much of it as can be paid.
+  double spend_in_part(const double* cost_s, std::size_t levels, std::size_t item, double share_s,
+                       Selection& selection) const {
+    std::size_t cheapest = levels - 1;
+    for (std::size_t l = levels; parameters_.levels && l-- > 0;) {
+      if (cost_s[l] <= cost_s[cheapest]) cheapest = l;
+    }
+    const double part = share_s / cost_s[cheapest];
     if ((parameters_.levels && !parameters_.partial) || !(part > 0)) return share_s;
-    selection.level[item] = static_cast<std::int16_t>(cheapest - workload.level_begin[item]);
+    selection.level[item] = static_cast<std::int16_t>(cheapest);
     selection.resolution[item] = std::min(part, 1.0);
     return 0;
   }
 
   const RobinHoodParameters parameters_;
-  std::vector<std::size_t> rank_;   // a type: its place from simple to complex
-  std::vector<std::size_t> first_;  // a rank: first free place in order_
-  std::vector<std::size_t> order_;  // items in traversal order
-  std::vector<double> value_;       // ... and their values
-  std::vector<double> suffix_;      // ... and the sum of values from there on; one more entry, 0
+  std::vector<std::size_t> rank_;     // a type: its place from simple to complex
+  std::vector<std::size_t> first_;    // a rank: first free place in order_
+  std::vector<std::uint32_t> order_;  // items in traversal order
+  std::vector<double> value_;         // ... and their values
+  std::vector<double> suffix_;        // ... and the sum of values from there on; one more entry, 0
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "scenes/flat_blocks.h"
+#include "scenes/item_writer.h"
 #include "scenes/view_levels.h"
 #include "scenes/visibility.h"
 
@@ -36,15 +37,35 @@ Facts stand_in(const ObjectType& type, double x) {
   return facts;
 }
 
-// How one instance is seen in this frame.
-struct Sight {
-  double depth_m = 0, distance_m = 0, area_px = 0;
+// What a frame needs of one instance, side by side: where only a few of many are visible, each costs a cache line or two,
+// and not one in every column of the scene.
+struct Row {
+  glm::dvec3 centre{0};
+  float radius_m = 0, area_m2 = 0;
+  TypeId type{};
+  ItemKind kind = ItemKind::levels;
 };
+
+std::vector<Row> pack(const Instances& instances) {
+  std::vector<Row> rows;
+  rows.reserve(instances.size());
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    rows.push_back({.centre = instances.centre[i],
+                    .radius_m = instances.radius_m[i],
+                    .area_m2 = instances.area_m2[i],
+                    .type = instances.type[i],
+                    .kind = instances.kind[i]});
+  }
+  return rows;
+}
 
 class SceneWorkload final : public WorkloadSource {
  public:
   explicit SceneWorkload(const Scene& scene)
-      : scene_(scene), visibility_(make_visibility(scene)), depths_(level_tree_depths(scene.instances)) {
+      : scene_(scene),
+        visibility_(make_visibility(scene)),
+        instances_(pack(scene.instances)),
+        depths_(level_tree_depths(scene.instances)) {
     focal_px_ = focal_length_px(scene.screen);
     facts_.name = scene.name;
     facts_.types = scene.types;
@@ -55,6 +76,7 @@ class SceneWorkload final : public WorkloadSource {
     for (std::size_t t = 0; t < scene.types.size(); ++t) add_static_facts(t);
     facts_.full_detail_facts = count_polygons();
     facts_.single_level = is_single_level();
+    facts_.fixed_facts = has_fixed_facts();
   }
 
   const SceneFacts& scene() const override { return facts_; }
@@ -65,24 +87,28 @@ class SceneWorkload final : public WorkloadSource {
     request_ = request;
     VisibilityCounts counts;
     counts.tests = visibility_->find(*pose_, rows_);
+    const bool tree = !scene_.instances.subtree_end.empty();
     begin(workload);
-    if (scene_.instances.subtree_end.empty()) {
+    items_.begin(workload, request.columns, tree && request.hierarchy);
+    if (!tree) {
       fill_flat(workload);
     } else if (request.hierarchy) {
       fill_tree(workload);
     } else {
       fill_blocks(workload);
     }
-    finish(workload);
-    for (const ItemKind kind : workload.kind) counts.visible += kind != ItemKind::bundle;
+    items_.finish();
+    counts.visible = items_.size() - items_.bundles();
     return counts;
   }
 
  private:
-  // Where the facts of a type begin in static_facts_, and its stand-in levels, if it is continuous.
+  // Where the facts of a type begin in static_facts_, and its stand-in levels, if it is continuous; how many they are.
   struct TypeFacts {
     std::uint32_t levels = 0, stand_ins = 0;
+    std::uint32_t level_count = 0, stand_in_count = 0;
     ViewPart view = ViewPart::none;
+    bool continuous = false;
   };
 
   void add_static_facts(std::size_t t) {
@@ -92,6 +118,9 @@ class SceneWorkload final : public WorkloadSource {
     static_facts_.insert(static_facts_.end(), type.levels.begin(), type.levels.end());
     places.stand_ins = static_cast<std::uint32_t>(static_facts_.size());
     if (places.view != ViewPart::none) type.continuous = false;
+    places.level_count = static_cast<std::uint32_t>(type.levels.size());
+    places.stand_in_count = static_cast<std::uint32_t>(std::max(1, type.stand_in_levels));
+    places.continuous = type.continuous;
     if (type.continuous) {
       for (int i = type.stand_in_levels - 1; i >= 1; --i) {
         static_facts_.push_back(stand_in(type, std::ldexp(1.0, -i)));
@@ -123,13 +152,21 @@ class SceneWorkload final : public WorkloadSource {
     return single;
   }
 
-  const Facts& finest(std::size_t row) const { return scene_.types[index(scene_.instances.type[row])].levels.back(); }
+  // A tree may be presented as blocks, whose facts are made for each frame.
+  bool has_fixed_facts() const {
+    return scene_.instances.subtree_end.empty() &&
+           std::all_of(type_facts_.begin(), type_facts_.end(),
+                       [](const TypeFacts& t) { return t.view == ViewPart::none; });
+  }
+
+  const Facts& finest(std::size_t row) const { return scene_.types[index(instances_[row].type)].levels.back(); }
 
   Sight look_at(std::uint32_t row) const {
-    const glm::dvec3 line = scene_.instances.centre[row] - pose_->eye;
+    const Row& instance = instances_[row];
+    const glm::dvec3 line = instance.centre - pose_->eye;
     Sight sight{.depth_m = glm::dot(line, pose_->forward), .distance_m = glm::length(line)};
-    sight.area_px = projected_area_px(static_cast<double>(scene_.instances.radius_m[row]), sight.distance_m,
-                                      sight.depth_m, focal_px_, facts_.screen_px);
+    sight.area_px = projected_area_px(static_cast<double>(instance.radius_m), sight.distance_m, sight.depth_m,
+                                      focal_px_, facts_.screen_px);
     return sight;
   }
 
@@ -137,66 +174,51 @@ class SceneWorkload final : public WorkloadSource {
   bool too_small(const Sight& sight) const { return sight.area_px < scene_.smallest_px; }
 
   void begin(Workload& workload) const {
-    workload.clear();
     workload.types = facts_.types;
     workload.screen_px = facts_.screen_px;
     workload.facts.assign(static_facts_.begin(), static_facts_.end());
     workload.static_facts = static_cast<std::uint32_t>(static_facts_.size());
-    workload.level_begin.push_back(0);
   }
 
-  void add_item(Workload& workload, std::uint32_t row, const Sight& sight, ItemKind kind, std::uint32_t facts_begin,
-                std::size_t levels) const {
-    workload.id.push_back(InstanceId{row});
-    workload.type.push_back(scene_.instances.type[row]);
-    workload.kind.push_back(kind);
-    workload.projected_area_px.push_back(sight.area_px);
-    workload.facts_begin.push_back(facts_begin);
-    workload.level_begin.push_back(workload.level_begin.back() + static_cast<std::uint32_t>(levels));
-    const Columns columns = request_.columns;
-    if (has(columns, Columns::depth)) workload.depth_m.push_back(sight.depth_m);
-    if (has(columns, Columns::distance)) workload.distance_m.push_back(sight.distance_m);
-    if (has(columns, Columns::view_angle)) {
-      const double cosine = sight.distance_m > 0 ? sight.depth_m / sight.distance_m : 1;
-      workload.view_angle_rad.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)));
-    }
-    if (has(columns, Columns::area)) workload.area_m2.push_back(static_cast<double>(scene_.instances.area_m2[row]));
-    // A box has the diameter of the sphere around it as its diagonal.
-    if (has(columns, Columns::diagonal)) {
-      workload.diagonal_m.push_back(2 * static_cast<double>(scene_.instances.radius_m[row]));
-    }
+  void add_item(std::uint32_t row, const Sight& sight, ItemKind kind, std::uint32_t facts_begin, std::size_t levels) {
+    items_.add({.id = InstanceId{row},
+                .type = instances_[row].type,
+                .kind = kind,
+                .facts_begin = facts_begin,
+                .levels = static_cast<std::uint32_t>(levels),
+                .area_m2 = static_cast<double>(instances_[row].area_m2),
+                .radius_m = static_cast<double>(instances_[row].radius_m)},
+               sight);
   }
 
   // The row as it is: bundle, curve, stand-ins, levels, or levels made for this view.
-  void add_row(Workload& workload, std::uint32_t row, const Sight& sight) const {
-    const TypeId id = scene_.instances.type[row];
-    const TypeFacts& places = type_facts_[index(id)];
-    const ObjectType& type = facts_.types[index(id)];
-    if (scene_.instances.kind[row] == ItemKind::bundle) {
-      add_item(workload, row, sight, ItemKind::bundle, places.levels, 0);
+  void add_row(Workload& workload, std::uint32_t row, const Sight& sight) {
+    const TypeId type = instances_[row].type;
+    const TypeFacts& places = type_facts_[index(type)];
+    if (instances_[row].kind == ItemKind::bundle) {
+      add_item(row, sight, ItemKind::bundle, places.levels, 0);
     } else if (places.view != ViewPart::none) {
-      add_view_row(workload, row, sight, scene_.view_levels[index(id)]);
-    } else if (!type.continuous) {
-      add_item(workload, row, sight, ItemKind::levels, places.levels, type.levels.size());
+      add_view_row(workload, row, sight, scene_.view_levels[index(type)]);
+    } else if (!places.continuous) {
+      add_item(row, sight, ItemKind::levels, places.levels, places.level_count);
     } else if (request_.curves) {
-      add_item(workload, row, sight, ItemKind::curve, places.levels, 1);
+      add_item(row, sight, ItemKind::curve, places.levels, 1);
     } else {
-      const auto levels = static_cast<std::size_t>(std::max(1, type.stand_in_levels));
-      add_item(workload, row, sight, ItemKind::levels, places.stand_ins, levels);
+      add_item(row, sight, ItemKind::levels, places.stand_ins, places.stand_in_count);
     }
   }
 
-  void add_view_row(Workload& workload, std::uint32_t row, const Sight& sight, const ViewLevels& levels) const {
+  void add_view_row(Workload& workload, std::uint32_t row, const Sight& sight, const ViewLevels& levels) {
     const auto begin_at = static_cast<std::uint32_t>(workload.facts.size());
-    const double type_radius_m = scene_.types[index(scene_.instances.type[row])].radius_m;
-    const double scale = static_cast<double>(scene_.instances.radius_m[row]) / type_radius_m;
+    const double type_radius_m = scene_.types[index(instances_[row].type)].radius_m;
+    const double scale = static_cast<double>(instances_[row].radius_m) / type_radius_m;
     // Nothing is nearer than the near plane, so the scale stays finite for an eye in the crown.
     const double px_per_m = focal_px_ / std::max(sight.distance_m, scene_.screen.near_m);
     append_view_levels(levels, finest(row), scale, px_per_m, workload.facts);
-    add_item(workload, row, sight, ItemKind::levels, begin_at, view_level_count(levels));
+    add_item(row, sight, ItemKind::levels, begin_at, view_level_count(levels));
   }
 
-  void fill_flat(Workload& workload) const {
+  void fill_flat(Workload& workload) {
     for (const std::uint32_t row : rows_) {
       const Sight sight = look_at(row);
       if (!too_small(sight)) add_row(workload, row, sight);
@@ -208,65 +230,50 @@ class SceneWorkload final : public WorkloadSource {
   void fill_tree(Workload& workload) {
     open_.clear();
     for (const std::uint32_t row : rows_) {
-      close_nodes(workload, row);
+      close_nodes(row);
       const Sight sight = look_at(row);
-      if (scene_.instances.kind[row] == ItemKind::curve && too_small(sight)) continue;
-      open_.push_back({row, static_cast<std::uint32_t>(workload.size())});
+      if (instances_[row].kind == ItemKind::curve && too_small(sight)) continue;
+      open_.push_back({row, items_.size()});
       add_row(workload, row, sight);
-      workload.subtree_end.push_back(0);
     }
-    close_nodes(workload, static_cast<std::uint32_t>(scene_.instances.size()));
+    close_nodes(static_cast<std::uint32_t>(scene_.instances.size()));
   }
 
   // Ends the subtrees that do not hold `row`.
-  void close_nodes(Workload& workload, std::uint32_t row) {
+  void close_nodes(std::uint32_t row) {
     while (!open_.empty() && scene_.instances.subtree_end[open_.back().row] <= row) {
-      const std::uint32_t item = open_.back().item;
+      const auto [node, item] = open_.back();
       open_.pop_back();
-      if (workload.kind[item] == ItemKind::bundle && workload.size() == item + 1) {
-        drop_last(workload);
+      if (instances_[node].kind == ItemKind::bundle && items_.size() == item + 1) {
+        items_.drop_last();
       } else {
-        workload.subtree_end[item] = static_cast<std::uint32_t>(workload.size());
+        items_.end_subtree(item);
       }
-    }
-  }
-
-  static void drop_last(Workload& workload) {
-    workload.id.pop_back();
-    workload.type.pop_back();
-    workload.kind.pop_back();
-    workload.projected_area_px.pop_back();
-    workload.facts_begin.pop_back();
-    workload.level_begin.pop_back();
-    workload.subtree_end.pop_back();
-    for (auto* column :
-         {&workload.depth_m, &workload.distance_m, &workload.view_angle_rad, &workload.area_m2, &workload.diagonal_m}) {
-      if (!column->empty()) column->pop_back();
     }
   }
 
   // A node at flat_depth, or above it with nothing visible below, is a block; nodes between it and the top are passed by.
   void fill_blocks(Workload& workload) {
-    const Instances& all = scene_.instances;
+    const std::vector<std::uint32_t>& subtree_end = scene_.instances.subtree_end;
     for (std::size_t i = 0; i < rows_.size();) {
       const std::uint32_t row = rows_[i];
-      const ItemKind kind = all.kind[row];
+      const ItemKind kind = instances_[row].kind;
       if (kind == ItemKind::curve) {
         const Sight sight = look_at(row);
         if (!too_small(sight)) add_row(workload, row, sight);
       }
-      const bool leaf = i + 1 == rows_.size() || rows_[i + 1] >= all.subtree_end[row];
+      const bool leaf = i + 1 == rows_.size() || rows_[i + 1] >= subtree_end[row];
       if (kind != ItemKind::levels || (!leaf && depths_[row] < scene_.flat_depth)) {
         ++i;
         continue;
       }
-      if (leaf && all.subtree_end[row] == row + 1 && depths_[row] == 0) {
+      if (leaf && subtree_end[row] == row + 1 && depths_[row] == 0) {
         add_row(workload, row, look_at(row));  // no tree: an ordinary instance beside one
         ++i;
         continue;
       }
       const auto end = static_cast<std::size_t>(
-          std::lower_bound(rows_.begin() + static_cast<std::ptrdiff_t>(i), rows_.end(), all.subtree_end[row]) -
+          std::lower_bound(rows_.begin() + static_cast<std::ptrdiff_t>(i), rows_.end(), subtree_end[row]) -
           rows_.begin());
       add_block(workload, i, end);
       i = end;
@@ -279,18 +286,12 @@ class SceneWorkload final : public WorkloadSource {
     const auto begin_at = static_cast<std::uint32_t>(workload.facts.size());
     const std::size_t levels =
         append_block_levels(scene_, depths_, std::span(rows_).subspan(first, last - first), areas_, workload.facts);
-    add_item(workload, rows_[first], look_at(rows_[first]), ItemKind::levels, begin_at, levels);
-  }
-
-  void finish(Workload& workload) const {
-    workload.cost_s.resize(workload.level_begin.back());
-    workload.benefit.resize(workload.level_begin.back());
-    workload.curve_setup_s.resize(workload.size());
-    workload.curve_knee.resize(workload.size());
+    add_item(rows_[first], look_at(rows_[first]), ItemKind::levels, begin_at, levels);
   }
 
   const Scene& scene_;
   std::unique_ptr<Visibility> visibility_;
+  std::vector<Row> instances_;
   std::vector<std::uint8_t> depths_;
   SceneFacts facts_;
   std::vector<Facts> static_facts_;
@@ -301,6 +302,7 @@ class SceneWorkload final : public WorkloadSource {
   const Pose* pose_ = nullptr;
   WorkloadRequest request_;
   std::vector<std::uint32_t> rows_;
+  ItemWriter items_;
   struct OpenNode {
     std::uint32_t row, item;
   };

@@ -7,7 +7,7 @@
 
 namespace framesim {
 
-// `scene` must outlive the source.
+// `scene` must outlive the source, and stay as it is.
 std::unique_ptr<WorkloadSource> make_workload_source(const Scene& scene);
 
 }  // namespace framesim

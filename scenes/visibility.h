@@ -2,10 +2,12 @@
 // and sampled cell visibility.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -28,7 +30,12 @@ Frustum make_frustum(const Pose& pose, const Screen& screen);
 double projected_area_px(double radius_m, double distance_m, double depth_m, const Screen& screen);
 // Focal length in pixels, and the same area with it and the screen's pixels given, for loops over many items.
 double focal_length_px(const Screen& screen);
-double projected_area_px(double radius_m, double distance_m, double depth_m, double focal_px, double screen_px);
+inline double projected_area_px(double radius_m, double distance_m, double depth_m, double focal_px, double screen_px) {
+  if (depth_m <= -radius_m) return 0;
+  if (distance_m <= radius_m) return screen_px;
+  const double radius_px = focal_px * radius_m / distance_m;
+  return std::min(screen_px, std::numbers::pi * radius_px * radius_px);
+}
 
 class Visibility {
  public:

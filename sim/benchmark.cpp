@@ -17,6 +17,7 @@ double run_s(const Machine& machine, const CommandColumns& commands) {
 }
 
 double batch_s(const Machine& machine, const Facts& facts, double area_px, int draws) {
+  machine.count_benchmark_draws(draws);
   const Machine::StageTimes times = machine.draw_time(facts, area_px, 1, false);
   const auto n = static_cast<std::size_t>(draws);
   CommandColumns commands;

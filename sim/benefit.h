@@ -22,4 +22,23 @@ double benefit(const Facts& facts, const ObjectType& type, double projected_area
 // Fills workload.benefit for all levels of all items.
 void score(Workload& workload);
 
+// The same bits, frame after frame: what does not depend on the view is worked out before, where that is less work than it
+// saves. Keeps its memory.
+class BenefitScorer {
+ public:
+  void score(Workload& workload);
+
+ private:
+  // A level for which size * accuracy may be taken, without a benefit of its own.
+  struct Level {
+    double accuracy = 0;  // with all its samples
+    bool smooth = false;  // exponent 2
+    bool plain = false;   // false: ask benefit()
+  };
+  static Level level_of(const Facts& facts);
+  bool score_plain(Workload& workload, std::size_t item) const;
+
+  std::vector<Level> levels_;  // of the facts that are the same in every frame
+};
+
 }  // namespace framesim

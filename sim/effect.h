@@ -36,6 +36,14 @@ enum class Hook : std::uint16_t {
 constexpr Hook operator|(Hook a, Hook b) { return static_cast<Hook>(static_cast<int>(a) | static_cast<int>(b)); }
 constexpr bool has(Hook set, Hook hook) { return (static_cast<int>(set) & static_cast<int>(hook)) != 0; }
 
+// What another seed changes of what an effect does. Where it changes times at most, many seeds can share a frame
+// (replications.h).
+enum class SeedUse : std::uint8_t {
+  none,   // nothing
+  times,  // at Hook::frame the settings, at Hook::commands both GPU stages of the commands that are there; nothing else
+  any,
+};
+
 // What is known of the run when an effect is asked whether it is inert.
 struct EffectContext {
   const MachineProfile& machine;  // with the effects of Hook::machine before this one applied
@@ -64,6 +72,7 @@ class Effect {
   virtual Hook hooks() const = 0;
   // Why this effect cannot change any frame of the run, or nothing if it can.
   virtual std::optional<std::string> inert(const EffectContext& context) const = 0;
+  virtual SeedUse seed_use() const { return SeedUse::any; }
   // Workload columns that the effect reads beside those of the policy.
   virtual Columns columns() const { return Columns::none; }
   // Once before the first frame; forgets all frames seen.

@@ -4,6 +4,10 @@
 //   events       the same system run through the event queue; the independent reference, bit for bit equal
 //   closed form  one overlap formula a frame: T = max(t_l, t_r) + s*min(t_l, t_r), MODEL section 2
 //
+// `automatic` takes the cheapest that is exact for the machine: events where a bus is arbitrated or another client preempts
+// the GPU, else the recurrence for staged overlap, else the closed form, which then is the machine's definition.
+// Asked for by name, any engine runs on any machine as an approximation; what it leaves out is told by `left_out`.
+//
 // Departure times (B1, B2 FIFO capacities, n frames in flight, V vsync period), i counting commands over all frames:
 //   cpu_start[k] = max(P[last of k-1], shown[k-n])
 //   P[i]  = max(P[i-1] + submit[i], S1[i-B1])       P[i-1] is cpu_start[k] + cpu_before for the first command of k
@@ -16,7 +20,9 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/machine.h"
 #include "sim/units.h"
@@ -46,6 +52,9 @@ struct FrameTimes {
   Picoseconds draw_time{0};   // E2[last] - max(S1[first], E2[last of previous frame])
   Picoseconds frame_time{0};  // shown[k] - shown[k-1]; for k = 0, shown - cpu_start
   Picoseconds latency{0};     // shown - cpu_start
+  Picoseconds bus_wait{0};    // per-primitive stage: waited for uploads and for the bus, summed over the frame's commands
+  Picoseconds preempted{0};   // GPU: held by another client, switches included, since the frame before was drawn
+  std::int64_t steps = 0;     // counted work: formulas (closed form), equations (recurrence) or events taken
   CriticalTimes critical{};   // all 0 unless asked for
 };
 
@@ -62,11 +71,20 @@ class Engine {
 };
 
 struct EngineOptions {
-  EngineKind kind = EngineKind::automatic;  // automatic: recurrence for staged overlap, closed form otherwise
-  bool critical_path = false;               // fill FrameTimes::critical (recurrence only; others leave it 0)
+  EngineKind kind = EngineKind::automatic;
+  bool critical_path = false;  // fill FrameTimes::critical (recurrence only; others leave it 0)
 };
-// The stages and FIFOs of `machine` are there under any overlap, so `recurrence` and `events` run on every profile;
-// `closed_form` needs one whose overlap is a formula (InternalError otherwise).
+
+// The cheapest kind that is exact for `machine`; never `automatic`.
+EngineKind exact_engine(const MachineProfile& machine);
+// What `kind` leaves out or only approximates on `machine`, in words, one entry each; empty if it is exact.
+//  - recurrence, closed form with a bus: an upload lengthens the per-primitive stage of its command, and meets no other
+//    traffic; with a client: it never comes;
+//  - closed form with staged overlap: s is the share of the CPU's time that comes before the first command is submitted
+//    (MODEL section 2) with one frame in flight, and 0 with more; FIFOs are not simulated;
+//  - recurrence, events with a closed-form overlap: the stages and FIFOs of `machine` are run instead of its formula.
+std::vector<std::string> left_out(EngineKind kind, const MachineProfile& machine);
+
 std::unique_ptr<Engine> make_engine(const MachineProfile& machine, const EngineOptions& options);
 
 }  // namespace framesim

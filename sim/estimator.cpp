@@ -21,29 +21,34 @@ double knee_of(const Facts& facts, bool draws_scale) {
 
 }  // namespace
 
-void Estimator::price(Workload& workload) const {
+void Estimator::size_columns(Workload& workload) {
   const std::size_t items = workload.size();
   workload.cost_s.resize(items == 0 ? 0 : workload.level_begin[items]);
   workload.curve_setup_s.resize(items);
   workload.curve_knee.resize(items);
-  const auto floored = [](double cost) { return std::max(cost, kSmallestCostS); };
-  for (std::size_t i = 0; i < items; ++i) {
-    const double area_px = workload.projected_area_px[i];
-    workload.curve_setup_s[i] = 0;
-    workload.curve_knee[i] = 0;
-    if (workload.kind[i] != ItemKind::curve) {
-      for (std::size_t l = 0; l < workload.levels(i); ++l) {
-        workload.cost_s[workload.level_begin[i] + l] = floored(cost_s(workload.level_facts(i, l), area_px));
-      }
-      continue;
-    }
-    const bool draws_scale = workload.type_of(i).draws_scale_below_knee;
-    const Facts facts = at_full_resolution(workload.level_facts(i, 0), draws_scale);
-    const double cost = floored(cost_s(facts, area_px));
-    workload.cost_s[workload.finest(i)] = cost;
-    workload.curve_setup_s[i] = std::clamp(setup_s(facts), 0.0, cost);
-    workload.curve_knee[i] = knee_of(facts, draws_scale);
+}
+
+void Estimator::price(Workload& workload) const {
+  size_columns(workload);
+  for (std::size_t i = 0; i < workload.size(); ++i) price_item(workload, i);
+}
+
+void Estimator::price_item(Workload& workload, std::size_t item) const {
+  if (workload.kind[item] == ItemKind::curve) return price_curve(workload, item);
+  const std::uint32_t begin = workload.level_begin[item];
+  for (std::size_t l = 0; l < workload.levels(item); ++l) {
+    const double cost = cost_s(workload.level_facts(item, l), workload.projected_area_px[item]);
+    workload.cost_s[begin + l] = std::max(cost, kSmallestCostS);
   }
+}
+
+void Estimator::price_curve(Workload& workload, std::size_t item) const {
+  const bool draws_scale = workload.type_of(item).draws_scale_below_knee;
+  const Facts facts = at_full_resolution(workload.level_facts(item, 0), draws_scale);
+  const double cost = std::max(cost_s(facts, workload.projected_area_px[item]), kSmallestCostS);
+  workload.cost_s[workload.finest(item)] = cost;
+  workload.curve_setup_s[item] = std::clamp(setup_s(facts), 0.0, cost);
+  workload.curve_knee[item] = knee_of(facts, draws_scale);
 }
 
 }  // namespace framesim

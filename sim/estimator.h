@@ -38,9 +38,20 @@ class Estimator {
   virtual double setup_s(const Facts& facts) const = 0;
   // Logic time of a frame with that many visible items.
   virtual double logic_s(std::int64_t visible) const = 0;
-  // Fills cost_s, curve_setup_s and curve_knee of the whole workload. The default calls cost_s for every level.
+  // Fills cost_s of the whole workload, and curve_setup_s and curve_knee of its curves. The default calls cost_s for every
+  // level; one that overrides it for speed gives the same bits.
   virtual void price(Workload& workload) const;
   virtual void correct(const EstimateOutcome&) {}
+  // Whether what correct() tells may change a later estimate.
+  virtual bool learns() const { return false; }
+
+ protected:
+  // The parts of price(): the columns have their lengths; then an item at a time.
+  static void size_columns(Workload& workload);
+  void price_item(Workload& workload, std::size_t item) const;
+
+ private:
+  void price_curve(Workload& workload, std::size_t item) const;
 };
 
 using EstimatorEntry = RegistryEntry<Estimator>;

@@ -1,85 +1,59 @@
 // The staged pipeline as a system of queues and servers, run through the event queue: the independent reference of the
-// recurrence, and the place for whatever has no recurrence. Nothing here is computed from the equations of engine.h: a
-// departure happens when the state allows it.
+// recurrence, and the exact engine for whatever has no recurrence. Nothing here is computed from the equations of
+// engine.h: a departure happens when the state allows it. At one instant things happen in the order of `Phase`
+// (event_queue.h).
 //
-// Frames arrive one at a time, but they overlap: with two or more in flight the CPU begins frame k+1 while the GPU still
-// draws frame k. Queues are first in, first out, so frame k+1 cannot delay frame k. Each run therefore has two parts: the
-// system goes on until the CPU has submitted the frame and stops there, waiting for the next; a copy of it goes on from that
-// checkpoint until the frame is shown, and gives the times.
+// A later frame never delays an earlier one, so that the times of a frame are final when `run` returns, before the next
+// frame is known. FIFOs give that by themselves; bus and client have a rule for it, marked (F) below.
+//
+// Bus (MachineProfile::bus). One transfer at a time, in grants of at most one chunk. Uploads go in command order; that of
+// command i asks at P[i], and S1[i] is not before its end. A command with a fetch asks at S1 and waits for the grant:
+//   E1[i] = max(S1[i] + wait[i] + primitive[i], S2[i-B2])      the fetch being the first part of primitive[i]
+// The bus is given at the end of an instant, when it is free:
+//   in_order       to whoever asked first, at a tie to the fetch. What is left of an upload asks again at the end of a grant;
+//                  the next upload counts as asking since its own command was submitted
+//   draws_first    to the fetch          uploads_first  to the upload
+// A grant is not interrupted, but (F): a fetch goes before the uploads of later frames, whatever the arbitration, and takes
+// the bus from one at once; what is left of that upload goes on asking.
+// bus_wait counts the time in which the per-primitive stage is free and the next command's upload has not ended, or in
+// which its command waits for a grant.
+//
+// Client (MachineProfile::client). A job has both stages for switch_time + duration + switch_time, which counts as `preempted`
+// and not as bus_wait; jobs that come meanwhile follow it at once, in order. While a job waits or runs, no command begins
+// in a stage and no fetch is granted; submission, uploads and a fetch that has begun go on.
+//   interrupting      a job begins when it arrives; work in the stages stops, and goes on where it stopped
+//   between_commands  a job waits until no stage works. A command that is done and finds FIFO 2 full, or waits for its grant,
+//                     is not at work: nothing that a job waits for waits for the job, so there is no deadlock. (F): only
+//                     commands of the oldest frame that is not drawn yet are waited for, those of later frames stop
 #pragma once
 
-#include <deque>
+#include <optional>
 
 #include "sim/engine.h"
-#include "sim/event_queue.h"
+#include "sim/pipeline_state.h"
 
 namespace framesim {
 
-// The state of everything at one simulated time; a value, so that a copy is a checkpoint.
-class PipelineState {
- public:
-  PipelineState(int primitive_fifo, int pixel_fifo, int frames_in_flight);
-
-  // Hands the next frame to the CPU, which must be idle. `work` is read until the frame is submitted.
-  void accept(const FrameWork& work);
-  // Takes one event and lets everything move that can. Throws InternalError if there is none.
-  void step();
-
-  struct Frame {
-    Picoseconds swap{0}, vsync_period{0};
-    SimTime cpu_start{0}, submitted{0}, first_draw{0}, drawn{0}, shown{0};
-    bool is_submitted = false, is_drawn = false, is_shown = false;
-    bool waits_for_predecessor = false;  // its vertical blank has come, but the frame before is not shown yet
-  };
-  // Of the newest frame (age 0) or one before it; ages up to the number of frames in flight, if there were so many.
-  const Frame& newest(std::size_t age = 0) const { return frames_[frames_.size() - 1 - age]; }
-  bool has(std::size_t age) const { return age < frames_.size(); }
-
- private:
-  enum class Cpu : std::uint8_t { idle, waits_for_frame, works, waits_for_place };
-  enum class Server : std::uint8_t { idle, works, waits_for_place };
-  struct Command {
-    Picoseconds primitive{0}, pixel{0};
-    std::int64_t frame = 0;
-    bool first = false, last = false;
-  };
-
-  Frame& frame(std::int64_t number) { return frames_[static_cast<std::size_t>(number - oldest_)]; }
-  void begin_if_allowed();
-  void submit_next(Picoseconds before);
-  void show(std::int64_t number);
-  void finish_pixels();
-  bool enter_primitive_fifo();
-  bool start_primitive();
-  bool enter_pixel_fifo();
-  bool start_pixel();
-
-  std::size_t primitive_capacity_, pixel_capacity_;
-  std::int64_t in_flight_;
-  EventQueue events_;
-  Cpu cpu_ = Cpu::idle;
-  const FrameWork* work_ = nullptr;  // of the frame that the CPU works on
-  std::size_t next_command_ = 0;
-  std::deque<Command> primitive_fifo_, pixel_fifo_;
-  Server primitive_ = Server::idle, pixel_ = Server::idle;
-  Command in_primitive_, in_pixel_;
-  std::deque<Frame> frames_;  // the newest and those that something may still depend on
-  std::int64_t oldest_ = 0;   // number of frames_.front()
-};
-
+// With one frame in flight the CPU begins a frame when the one before has been shown, and there is one state, which goes
+// on from frame to frame. With more, the CPU has to begin the next frame at a time at which this one is still being drawn:
+// the state stops when a frame has been submitted, and a copy goes on alone until that frame is shown.
 class EventEngine final : public Engine {
  public:
-  // Uses primitive_fifo, pixel_fifo and overlap.frames_in_flight of `machine`.
+  // Uses primitive_fifo, pixel_fifo, overlap.frames_in_flight, bus and client of `machine`. Throws InternalError for a FIFO
+  // without a place, no frame in flight, and a client that leaves nothing of the GPU.
   explicit EventEngine(const MachineProfile& machine);
+  EventEngine(const EventEngine&) = delete;
+  EventEngine& operator=(const EventEngine&) = delete;
   EngineKind kind() const override { return EngineKind::events; }
-  // Throws as StagedRecurrence does, and must not be used again after a throw.
+  // Throws as StagedRecurrence does, also for an upload or fetch out of range, and must not be used again after a throw.
+  // Allocates nothing once the largest number of pending events has been met.
   FrameTimes run(const FrameWork& work) override;
 
  private:
-  PipelineState checkpoint_;  // the CPU has submitted the last frame and is idle
-  PipelineState ahead_;       // run on until the last frame was shown
-  SimTime last_shown_{0};
-  std::int64_t frame_ = 0;
+  CommandRing ring_;
+  PipelineState state_;
+  std::optional<PipelineState> ahead_;  // with more than one frame in flight
+  SimTime last_shown_{0};               // without vsync a frame may be shown before the one before it
 };
 
 }  // namespace framesim

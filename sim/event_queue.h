@@ -20,14 +20,26 @@
 
 namespace framesim {
 
-// Phases in the order in which they happen at one instant.
-enum class Phase : std::uint8_t { pixel_done, primitive_done, submit_done, frame_shown, frame_start };
+// Phases in the order in which they happen at one instant: what ends and begins by itself, then the other client of the
+// GPU, which so finds everything in its place, and last the bus, when all who want it at this instant have asked.
+enum class Phase : std::uint8_t {
+  pixel_done,
+  primitive_done,
+  submit_done,
+  transfer_done,
+  frame_shown,
+  frame_start,
+  job_arrives,
+  job_leaves,
+  job_takes_gpu,
+  bus_grant
+};
 
 struct Event {
   SimTime time{0};
   Phase phase = Phase::frame_start;
   std::uint64_t sequence = 0;  // below 2^56: two millennia at a million events a second
-  std::uint64_t payload = 0;   // command or frame index
+  std::uint64_t payload = 0;   // frame number, turn of a stage or of the bus
 };
 
 class EventQueue {

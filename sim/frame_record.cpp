@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <iterator>
 
 #include "sim/fnv.h"
@@ -18,7 +19,13 @@ constexpr std::array kColumns = {
 };
 
 void append(std::string& line, std::int64_t value) { fmt::format_to(std::back_inserter(line), "{},", value); }
-void append(std::string& line, double value) { fmt::format_to(std::back_inserter(line), "{:.17g},", value); }
+void append(std::string& line, double value) {
+  if (std::isnan(value)) {
+    line += "NA,";
+    return;
+  }
+  fmt::format_to(std::back_inserter(line), "{:.17g},", value);
+}
 
 void add(Fnv1a& hash, std::int64_t value) { hash.add(static_cast<std::uint64_t>(value)); }
 void add(Fnv1a& hash, double value) { hash.add(std::bit_cast<std::uint64_t>(value)); }

@@ -27,6 +27,8 @@ namespace framesim {
   X(double, planned_cost_s, "s", "estimated cost of the selection")                                        \
   X(double, benefit, "", "common benefit of the selection")                                                \
   X(double, finest_benefit, "", "common benefit if everything visible were drawn at its finest")           \
+  X(double, bound, "", "no selection within the budget has more benefit; NaN if it was not asked for")        \
+  X(double, coarsest_benefit, "", "... and that of everything at its coarsest")                            \
   X(std::int64_t, visibility_tests, "", "bounds tested")                                                   \
   X(std::int64_t, visible, "", "visible items")                                                            \
   X(std::int64_t, drawn, "", "drawn items")                                                                \
@@ -43,6 +45,10 @@ namespace framesim {
   X(std::int64_t, critical_pixel_ps, "ps", "critical path: per-pixel stage")                               \
   X(std::int64_t, critical_backlog_ps, "ps", "critical path: behind earlier frames")                       \
   X(std::int64_t, critical_present_ps, "ps", "critical path: swap and waiting for the vertical blank") \
+  X(std::int64_t, upload_bytes, "bytes", "moved to the GPU's memory for this frame")                           \
+  X(std::int64_t, bus_wait_ps, "ps", "per-primitive stage: waiting for uploads and for the bus")           \
+  X(std::int64_t, preempted_ps, "ps", "GPU: held by another client")                                       \
+  X(std::int64_t, engine_steps, "", "formulas, equations or events that the engine worked off")            \
   X(std::int64_t, fidelity, "", "engine that computed the times: 0 closed form, 1 recurrence, 2 events")
 
 struct FrameRecord {
@@ -57,8 +63,8 @@ struct FrameColumn {
 std::span<const FrameColumn> frame_columns();
 std::string frame_csv_header();
 std::string to_csv(const FrameRecord& record);  // doubles with 17 significant digits
-// FNV-1a over the bits of all columns of all records, in order. `fidelity` is one of them: recurrence and events agree in
-// all others but the critical path, and their hashes differ.
+// FNV-1a over the bits of all columns of all records, in order. `fidelity` and `engine_steps` are among them:
+// recurrence and events agree in all others but the critical path, and their hashes differ.
 std::uint64_t hash(std::span<const FrameRecord> records);
 
 }  // namespace framesim

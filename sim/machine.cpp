@@ -23,12 +23,6 @@ void require_fifo(const std::string& machine, const char* name, int value) {
   throw InputError({"machine " + machine}, fmt::format("{} is {}; allowed are 1 to 1000000 commands", name, value));
 }
 
-constexpr double kReferenceArea = 1 << 20;  // pixels: where the nonlinear term equals k times the linear one
-
-double pixel_time(const AlgorithmCosts& costs, double area_px) {
-  return costs.pixel_s * area_px * (1 + costs.pixel_nonlinearity * area_px / kReferenceArea);
-}
-
 const AlgorithmCosts& costs_of(const MachineProfile& profile, Algorithm algorithm) {
   return profile.algorithm[static_cast<std::size_t>(algorithm)];
 }
@@ -96,6 +90,10 @@ void CommandColumns::clear() {
   primitive_ps.clear();
   pixel_ps.clear();
   item.clear();
+  upload_ps.clear();
+  fetch_ps.clear();
+  facts.clear();
+  upload_bytes = 0;
 }
 
 Machine::Machine(MachineProfile profile) : profile_(std::move(profile)) {
@@ -125,29 +123,53 @@ double draws_issued(const Facts& facts, double resolution, bool draws_scale_belo
   return std::min(facts.draws, (facts.polygons + facts.lines + facts.points) * resolution);
 }
 
-Machine::StageTimes Machine::draw_time(const Facts& facts, double area_px, double resolution,
-                                       bool draws_scale_below_knee) const {
-  if (facts.stated_cost_s) return {.primitive_s = *facts.stated_cost_s * resolution, .pixel_s = 0};
+Machine::LevelCosts Machine::level_costs(const Facts& facts) const {
+  if (facts.stated_cost_s) return {.primitives_s = *facts.stated_cost_s};
   const AlgorithmCosts& costs = costs_of(profile_, facts.algorithm);
   const double primitives = costs.polygon_s * facts.polygons + costs.vertex_s * facts.vertices +
                             costs.texture_byte_s * facts.texture_bytes +
                             costs_of(profile_, Algorithm::lines).polygon_s * facts.lines +
                             costs_of(profile_, Algorithm::points).polygon_s * facts.points;
-  return {.primitive_s = costs.draw_s * draws_issued(facts, resolution, draws_scale_below_knee) + primitives * resolution,
-          .pixel_s = pixel_time(costs, facts.coverage * area_px * resolution)};
+  return {.draws_s = costs.draw_s * facts.draws,
+          .primitives_s = primitives,
+          .coverage = facts.coverage,
+          .pixel_s = costs.pixel_s,
+          .pixel_nonlinearity = costs.pixel_nonlinearity};
+}
+
+Machine::StageTimes Machine::draw_time(const Facts& facts, double area_px, double resolution,
+                                       bool draws_scale_below_knee) const {
+  LevelCosts costs = level_costs(facts);
+  if (draws_scale_below_knee && !facts.stated_cost_s) {
+    costs.draws_s = costs_of(profile_, facts.algorithm).draw_s * draws_issued(facts, resolution, true);
+  }
+  return costs.times(area_px, resolution);
+}
+
+double Machine::submit_s(double draws) const {
+  return profile_.submit_s + profile_.submit_draw_s * std::max(0.0, draws - 1);
+}
+
+Machine::DrawTimes Machine::draw_times(const Workload& workload, std::size_t item, std::size_t level,
+                                       double resolution) const {
+  const Facts& facts = workload.level_facts(item, level);
+  const bool scale = workload.kind[item] == ItemKind::curve && workload.type_of(item).draws_scale_below_knee;
+  return {.submit_s = submit_s(draws_issued(facts, resolution, scale)),
+          .stages = draw_time(facts, workload.projected_area_px[item], resolution, scale)};
 }
 
 void Machine::draw(const Workload& workload, std::size_t item, std::size_t level, double resolution,
                    CommandColumns& commands) const {
-  const Facts& facts = workload.level_facts(item, level);
-  const bool scale = workload.kind[item] == ItemKind::curve && workload.type_of(item).draws_scale_below_knee;
-  const double further_draws = std::max(0.0, draws_issued(facts, resolution, scale) - 1);
-  const StageTimes times = draw_time(facts, workload.projected_area_px[item], resolution, scale);
-  append(profile_.submit_s + profile_.submit_draw_s * further_draws, times, static_cast<std::uint32_t>(item), commands);
+  const DrawTimes times = draw_times(workload, item, level, resolution);
+  append(times.submit_s, times.stages, static_cast<std::uint32_t>(item), commands);
+  if (profile_.bus.chunk.count() > 0) {
+    commands.facts.push_back(workload.facts_begin[item] + static_cast<std::uint32_t>(level));
+  }
 }
 
 void Machine::command(const Workload& workload, const Selection& selection, CommandColumns& commands) const {
   append(0, {.primitive_s = 0, .pixel_s = profile_.clear_s}, kClearCommand, commands);
+  if (profile_.bus.chunk.count() > 0) commands.facts.push_back(kClearCommand);
   for (std::size_t i = 0; i < workload.size(); ++i) {
     if (selection.level[i] == kNotDrawn) continue;
     draw(workload, i, static_cast<std::size_t>(selection.level[i]), selection.resolution[i], commands);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "sim/check.h"
 #include "sim/statistics.h"
@@ -18,6 +19,8 @@ constexpr std::array kColumns = {
     FRAMESIM_SUMMARY_COLUMNS(X)
 #undef X
 };
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double seconds(std::int64_t picoseconds) { return to_seconds(Picoseconds{picoseconds}); }
 
@@ -56,9 +59,30 @@ void summarise_frame_times(std::span<const FrameRecord> records, double target_s
   summary.bias = (summary.mean_s - target_s) / target_s;
   summary.avg_err =
       mean_of(records, [&](const FrameRecord& r) { return std::fabs(seconds(r.frame_time_ps) - target_s); }) / target_s;
+  // These need runs beside this one.
+  summary.err_over_least = summary.err_estimator = summary.err_planner = summary.err_selection = kNone;
   summary.p95_s = quantile(sorted, 0.95);
   summary.p99_s = quantile(sorted, 0.99);
   summary.over_target = mean_of(records, [&](const FrameRecord& r) { return r.frame_time_ps > target_ps ? 1.0 : 0.0; });
+}
+
+// Costs are sums of many terms: a budget kept to 1e-9 is kept.
+bool keeps_budget(const FrameRecord& r) { return r.planned_cost_s <= r.budget_s * (1 + 1e-9); }
+
+// The bound lies above all-coarsest by more than rounding.
+bool has_choice(const FrameRecord& r) { return r.bound - r.coarsest_benefit > 1e-9 * r.bound; }
+
+// Against the bound, over the frames that keep their budget: more can be had for more. NaN without such frames, and
+// without bounds. A frame without a choice (the bound is that of all-coarsest) has no gap.
+void summarise_gaps(std::span<const FrameRecord> records, Summary& summary) {
+  const auto bounded = [](const FrameRecord& r) { return std::isfinite(r.bound) && keeps_budget(r); };
+  summary.bound_share = mean_where(
+      records, kNone, [&](const FrameRecord& r) { return bounded(r) && r.bound > 0; },
+      [](const FrameRecord& r) { return r.benefit / r.bound; });
+  summary.ngap = mean_where(
+      records, kNone, [&](const FrameRecord& r) { return bounded(r) && has_choice(r); },
+      [](const FrameRecord& r) { return (r.bound - r.benefit) / (r.bound - r.coarsest_benefit); });
+  summary.over_budget = mean_of(records, [](const FrameRecord& r) { return keeps_budget(r) ? 0.0 : 1.0; });
 }
 
 }  // namespace
@@ -75,6 +99,7 @@ Summary summarise(std::span<const FrameRecord> records, double target_s) {
   summary.benefit_share = mean_where(
       records, 1, [](const FrameRecord& r) { return r.finest_benefit > 0; },
       [](const FrameRecord& r) { return r.benefit / r.finest_benefit; });
+  summarise_gaps(records, summary);
   summary.switches = mean_of(records, [](const FrameRecord& r) { return static_cast<double>(r.switches); });
   summary.operations = mean_of(records, [](const FrameRecord& r) { return static_cast<double>(r.operations); });
   summary.estimator_error = mean_where(

@@ -20,13 +20,25 @@ void Selection::reset(std::size_t n) {
 
 namespace {
 
-template <class Value>
-double sum_over_drawn(const Workload& workload, const Selection& selection, Value value) {
-  CompensatedSum sum;
+template <class Visit>
+void for_each_drawn(const Workload& workload, const Selection& selection, Visit visit) {
   for (std::size_t i = 0; i < workload.size(); ++i) {
-    if (selection.level[i] != kNotDrawn) sum.add(value(i));
+    if (selection.level[i] != kNotDrawn) visit(i);
   }
-  return sum.value();
+}
+
+std::size_t drawn_entry(const Workload& workload, const Selection& selection, std::size_t item) {
+  return workload.level_begin[item] + static_cast<std::size_t>(selection.level[item]);
+}
+
+double drawn_cost_s(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (workload.kind[item] == ItemKind::curve) return curve_cost_s(workload, item, selection.resolution[item]);
+  return workload.cost_s[drawn_entry(workload, selection, item)] * selection.resolution[item];
+}
+
+double drawn_benefit(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (workload.kind[item] == ItemKind::curve) return curve_benefit(workload, item, selection.resolution[item]);
+  return workload.benefit[drawn_entry(workload, selection, item)] * selection.resolution[item];
 }
 
 bool agrees(double a, double b) { return std::fabs(a - b) <= 1e-9 * std::max({std::fabs(a), std::fabs(b), 1e-300}); }
@@ -73,19 +85,24 @@ std::optional<std::string> find_fault(const Workload& workload, const Selection&
 }
 
 double selected_cost_s(const Workload& workload, const Selection& selection) {
-  return sum_over_drawn(workload, selection, [&](std::size_t i) {
-    if (workload.kind[i] == ItemKind::curve) return curve_cost_s(workload, i, selection.resolution[i]);
-    return workload.cost_s[workload.level_begin[i] + static_cast<std::size_t>(selection.level[i])] *
-           selection.resolution[i];
-  });
+  CompensatedSum sum;
+  for_each_drawn(workload, selection, [&](std::size_t i) { sum.add(drawn_cost_s(workload, selection, i)); });
+  return sum.value();
 }
 
 double selected_benefit(const Workload& workload, const Selection& selection) {
-  return sum_over_drawn(workload, selection, [&](std::size_t i) {
-    if (workload.kind[i] == ItemKind::curve) return curve_benefit(workload, i, selection.resolution[i]);
-    return workload.benefit[workload.level_begin[i] + static_cast<std::size_t>(selection.level[i])] *
-           selection.resolution[i];
+  CompensatedSum sum;
+  for_each_drawn(workload, selection, [&](std::size_t i) { sum.add(drawn_benefit(workload, selection, i)); });
+  return sum.value();
+}
+
+SelectedSums selected_sums(const Workload& workload, const Selection& selection) {
+  CompensatedSum cost_s, gained;
+  for_each_drawn(workload, selection, [&](std::size_t i) {
+    cost_s.add(drawn_cost_s(workload, selection, i));
+    gained.add(drawn_benefit(workload, selection, i));
   });
+  return {.cost_s = cost_s.value(), .benefit = gained.value()};
 }
 
 }  // namespace framesim

@@ -38,6 +38,7 @@ struct PolicyTraits {
   WorkloadRequest request;               // kinds of items it handles and columns it reads
   bool keeps_budget = false;             // planned_cost_s <= budget_s whenever the coarsest admissible choice allows it
   bool may_omit = false;                 // may leave visible items undrawn
+  bool uses_feedback = false;            // what observe() tells may change a later selection
   std::string_view planner = "inverse";  // planner that belongs to it, unless the user names another
   std::string_view operation = "";       // what one counted operation is, e.g. "heap move or level change"
 };
@@ -91,5 +92,12 @@ std::optional<std::string> find_fault(const Workload& workload, const Selection&
 // costs and benefits r times its level.
 double selected_cost_s(const Workload& workload, const Selection& selection);
 double selected_benefit(const Workload& workload, const Selection& selection);
+
+// Both at once, for a loop over many items.
+struct SelectedSums {
+  double cost_s = 0;
+  double benefit = 0;
+};
+SelectedSums selected_sums(const Workload& workload, const Selection& selection);
 
 }  // namespace framesim

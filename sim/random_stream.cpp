@@ -16,13 +16,15 @@ namespace {
 constexpr std::uint32_t low_half(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
 constexpr std::uint32_t high_half(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); }
 
-// The first 64 of Philox4x32-10's 128 bits, first word lowest.
-std::uint64_t philox(std::uint64_t key, std::uint64_t counter_low, std::uint32_t counter_2, std::uint32_t counter_3) {
+std::array<std::uint32_t, 4> philox(std::uint64_t key, std::uint64_t counter_low, std::uint32_t counter_2,
+                                    std::uint32_t counter_3) {
   const r123::Philox4x32::key_type k = {{low_half(key), high_half(key)}};
   const r123::Philox4x32::ctr_type c = {{low_half(counter_low), high_half(counter_low), counter_2, counter_3}};
   const auto drawn = r123::Philox4x32{}(c, k);
-  return drawn[0] | (std::uint64_t{drawn[1]} << 32);
+  return {drawn[0], drawn[1], drawn[2], drawn[3]};
 }
+
+std::uint64_t first_64(const std::array<std::uint32_t, 4>& block) { return block[0] | (std::uint64_t{block[1]} << 32); }
 
 std::uint64_t hash_of(std::string_view name) {
   Fnv1a hash;
@@ -42,10 +44,14 @@ double polynomial(const std::array<double, N>& c, double x) {
 
 // The seed is encrypted under the name rather than xor-ed with it: neighbouring seeds, or seeds that differ as two
 // names' hashes do, get unrelated keys.
-RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(philox(hash_of(name), seed, 0, 0)) {}
+RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(first_64(philox(hash_of(name), seed, 0, 0))) {}
+
+std::array<std::uint32_t, 4> RandomStream::block(std::uint64_t frame, std::uint32_t index, std::uint32_t lane) const {
+  return philox(key_, frame, index, lane);
+}
 
 std::uint64_t RandomStream::bits(std::uint64_t frame, std::uint32_t index, std::uint32_t lane) const {
-  return philox(key_, frame, index, lane);
+  return first_64(philox(key_, frame, index, lane));
 }
 
 double RandomStream::uniform(std::uint64_t frame, std::uint32_t index, std::uint32_t lane) const {

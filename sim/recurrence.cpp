@@ -82,6 +82,7 @@ FrameTimes StagedRecurrence::run(const FrameWork& work) {
   last_shown_ = waited_for = times.shown.count();
   next_shown_ = next_shown_ + 1 == shown_.size() ? 0 : next_shown_ + 1;
   ++frame_;
+  times.steps = 5 * static_cast<std::int64_t>(commands.size());  // P, S1, E1, S2, E2
   return times;
 }
 

@@ -1,17 +1,23 @@
 // One run: a scene under a policy on a machine. `Simulation::step` is one frame as a list of its stages; read it first.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/benefit.h"
+#include "sim/bound.h"
+#include "sim/command_writer.h"
 #include "sim/effect.h"
 #include "sim/engine.h"
 #include "sim/estimator.h"
 #include "sim/frame_record.h"
+#include "sim/picture_recorder.h"
 #include "sim/planner.h"
 #include "sim/policy.h"
 #include "sim/stage_graph.h"
+#include "sim/step_profile.h"
 #include "sim/workload.h"
 
 namespace framesim {
@@ -19,7 +25,10 @@ namespace framesim {
 struct SimulationConfig {
   double target_s = 0.025;
   EngineOptions engine;
-  bool check_selections = false;  // find_fault() on every frame; a fault is an InternalError
+  bool bound = false;              // find each frame's upper bound on the benefit (bound.h); changes no other column
+  bool check_selections = false;   // find_fault() on every frame; a fault is an InternalError
+  StepProfile* profile = nullptr;  // where given, the host's time in each part of a step is added up there
+  std::function<std::unique_ptr<Engine>()> make_engine{};  // where given, makes the engine in place of `engine`
 };
 
 // The parts of a run. All must outlive the simulation.
@@ -69,29 +78,30 @@ class Simulation {
   void run_logic();
   void decide();
   double plan_budget() const;
+  void find_bound();
   void submit();
   void show();
-  void record_quality();
-  void record_switches();
   void tell();
 
   SimulationParts parts_;
   SimulationConfig config_;
+  StepClock clock_;
   PolicyTraits traits_;
   StageGraph stages_;
   ActiveEffects effects_;
+  BenefitBound bound_;
   std::unique_ptr<Engine> engine_;
   std::vector<double> complexity_s_;
   std::int64_t next_frame_ = 0;
   Workload workload_;
+  BenefitScorer scorer_;
   Selection selection_;
+  CommandWriter writer_;
   CommandColumns commands_;
+  PictureRecorder picture_;
   FrameSettings settings_;
   FrameRecord record_;
-  double last_decide_s_ = 0;               // the planner's estimate of the coming decision
-  std::vector<std::int16_t> last_level_;   // an instance: its level when last visible
-  std::vector<std::int64_t> last_seen_;    // ... and that frame, or -1
-  std::vector<std::uint16_t> height_;      // hierarchies: levels of nodes below an item
+  double last_decide_s_ = 0;  // the planner's estimate of the coming decision
 };
 
 }  // namespace framesim

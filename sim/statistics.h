@@ -31,8 +31,8 @@ class Moments {
  public:
   void add(double x);
   std::int64_t count() const { return count_; }
-  double mean() const { return mean_; }         // 0 if empty
-  double deviation() const;                     // sample standard deviation (n-1); 0 for fewer than two
+  double mean() const { return mean_; }  // 0 if empty
+  double deviation() const;              // sample standard deviation (n-1); 0 for fewer than two
 
  private:
   std::int64_t count_ = 0;
@@ -43,5 +43,12 @@ class Moments {
 // The p-quantile (p in [0,1]) with linear interpolation between order statistics at h = (n-1)p (Hyndman and Fan 1996,
 // type 7, as R, NumPy and PresentMon's readers do). `sorted` ascending and not empty.
 double quantile(std::span<const double> sorted, double p);
+
+// Student's t: P(|T| <= t) with `degrees` of freedom, t >= 0, as the finite sum for whole degrees (Abramowitz and Stegun 1964,
+// 26.7.3 and 26.7.4).
+double student_within(double t, std::int64_t degrees);
+// The t with P(|T| <= t) = p, p in (0,1), degrees >= 1: 12.706 for 0.95 and 1, and 1.96 in the limit. Mean +- t * deviation /
+// sqrt(n), with n - 1 degrees, is the confidence interval of the mean.
+double student_t(double p, std::int64_t degrees);
 
 }  // namespace framesim

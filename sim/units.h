@@ -20,13 +20,28 @@ using SimTime = Picoseconds;
 // 1e-12, which no double equals.
 constexpr double to_seconds(Picoseconds t) { return static_cast<double>(t.count()) / 1e12; }
 
-// `seconds` rounded up to a whole picosecond (a whole number of picoseconds written as a decimal stays that number, although
-// its double may lie a hair above); a negative or NaN value, or one beyond `kLongestDuration`, is a broken
-// invariant and throws InternalError (see check.h) naming the value.
-Picoseconds ceil_picoseconds(double seconds);
-
 // One stage of one frame may not be longer than this (a day); it keeps sums of many stages inside 64 bits.
 inline constexpr Picoseconds kLongestDuration{86'400'000'000'000'000};
+
+// A broken invariant: throws InternalError naming the value.
+[[noreturn]] void refuse_duration(double seconds);
+
+// `seconds` rounded up to a whole picosecond (a whole number of picoseconds written as a decimal stays that number, although
+// its double may lie a hair above); a negative or NaN value, or one beyond `kLongestDuration`, is a broken
+// invariant and throws InternalError (see check.h) naming the value. Inline: it is called for every draw command.
+inline Picoseconds ceil_picoseconds(double seconds) {
+  // Not `seconds < 0`, so that a NaN fails too.
+  if (!(seconds >= 0 && seconds <= to_seconds(kLongestDuration))) refuse_duration(seconds);
+  // A decimal such as 3.5e-7 is off by half an ulp as a double and its product by another half: together at most 2^-52
+  // of the value. What exceeds a whole number by no more than that (doubled, for one operation more) is that whole
+  // number, else 350,000 ps would become 350,001.
+  constexpr double kSlack = 0x1p-51;
+  const double picoseconds = seconds * 1e12;
+  // Not negative and far below 2^63, so that the conversion rounds down. From 2^53 on every double is whole.
+  const auto below = static_cast<std::int64_t>(picoseconds);
+  const bool whole = picoseconds - static_cast<double>(below) <= picoseconds * kSlack;
+  return Picoseconds{whole ? below : below + 1};
+}
 
 // Index of an object type in the scene's type list.
 enum class TypeId : std::uint16_t {};

@@ -126,6 +126,7 @@ struct SceneFacts {
   double focal_px = 0;            // pixels from the eye to the screen; 0 = not known
   double full_detail_facts = 0;   // polygons of the whole scene at its finest levels, for reports
   bool single_level = false;      // whatever the request and the frame, no item has two levels to choose from
+  bool fixed_facts = false;       // whatever the request and the frame, all facts are static ones (Workload::static_facts)
 };
 
 // Fills the workload of any frame of a scene. Implemented in scenes/.

@@ -54,7 +54,7 @@ sanitized_tests() {
 }
 
 packages=$BUILD_PACKAGES
-[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev"
+[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev coinor-libcbc-dev"
 # shellcheck disable=SC2086
 stage "packages" install_packages $packages
 [ "$failed" -eq 0 ] || finish

@@ -65,6 +65,30 @@ BENCHMARK(tandem_events)->Name("tandem/event-engine")->Unit(benchmark::kMillisec
 void tandem_recurrence(benchmark::State& state) { tandem_engine<StagedRecurrence>(state, "recurrence"); }
 BENCHMARK(tandem_recurrence)->Name("tandem/recurrence")->Unit(benchmark::kMillisecond);
 
+// A thousand frames of a thousand of these commands, two in flight: what the checkpoint in each of them costs, which with
+// one in flight there is none of.
+void tandem_frames(benchmark::State& state) {
+  constexpr std::size_t kCommands = 1000;
+  const TandemTimes& times = tandem_times();
+  std::vector<CommandColumns> frames(kTandemJobs / kCommands);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto part = [&](std::size_t stage) {
+      const std::int64_t* const first = times.stage[stage].data() + k * kCommands;
+      return std::vector<std::int64_t>(first, first + kCommands);
+    };
+    frames[k].submit_ps = part(0), frames[k].primitive_ps = part(1), frames[k].pixel_ps = part(2);
+  }
+  MachineProfile machine;
+  machine.primitive_fifo = machine.pixel_fifo = static_cast<int>(kTandemPlaces);
+  machine.overlap.frames_in_flight = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    EventEngine engine(machine);
+    for (const CommandColumns& commands : frames) benchmark::DoNotOptimize(engine.run({.commands = commands}));
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kTandemJobs));
+}
+BENCHMARK(tandem_frames)->Name("tandem/event-engine-in-flight")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
 void hold_framesim(benchmark::State& state) {
   const std::vector<std::int64_t>& increments = hold_increments();
   for (auto _ : state) {

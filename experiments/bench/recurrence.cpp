@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "experiments/bench/allocations.h"
 #include "experiments/bench/input.h"
 #include "sim/effect.h"
+#include "sim/recurrence_lanes.h"
 #include "sim/statistics.h"
 
 namespace framesim::bench {
@@ -35,21 +37,22 @@ std::vector<CommandColumns> make_frames() {
   return frames;
 }
 
-std::unique_ptr<Effect> make_jitter() {
+std::unique_ptr<Effect> make_jitter(std::uint64_t seed) {
   return find_entry("effect", effects(), parse_spec("jitter:sigma=0.05"))
-      .make(parse_spec("jitter:sigma=0.05").settings, 1);
+      .make(parse_spec("jitter:sigma=0.05").settings, seed);
 }
 
 // The effect as the simulation calls it, on the columns of one frame.
 class JitterHook {
  public:
+  explicit JitterHook(std::uint64_t seed = 1) : jitter_(make_jitter(seed)) {}
   void operator()(std::int64_t frame, CommandColumns& commands) {
     jitter_->on_commands({.frame = frame, .workload = workload_, .selection = selection_, .machine = machine_},
                          commands);
   }
 
  private:
-  std::unique_ptr<Effect> jitter_ = make_jitter();
+  std::unique_ptr<Effect> jitter_;
   Workload workload_;
   Selection selection_;
   Machine machine_{MachineProfile{}};
@@ -138,27 +141,180 @@ BENCHMARK(with_effects)
     ->Name("recurrence/vsync+2-in-flight+jitter-in-columns+statistics")
     ->Unit(benchmark::kMicrosecond);
 
-// The same, and the jitter of both GPU stages is drawn for each frame.
-void with_drawn_jitter(benchmark::State& state) {
+FrameWork work_of(const CommandColumns& commands) {
+  return {.cpu_before = kCpuBefore, .swap = kSwap, .vsync_period = kBlank, .commands = commands};
+}
+
+// Jitter varies GPU times in place: those columns of `to` become copies, the others stay.
+void copy_gpu_times(const CommandColumns& from, CommandColumns& to) {
+  to.primitive_ps = from.primitive_ps;
+  to.pixel_ps = from.pixel_ps;
+}
+
+// The same on a copy of the columns, in which jitter is drawn for each frame, or which is left as it is to see what the
+// copying takes: a simulation writes each frame's columns anew, and copies nothing.
+template <bool kDrawn>
+void on_a_copy(benchmark::State& state) {
   const std::vector<CommandColumns> frames = make_frames();
+  std::vector<CommandColumns> copies = frames;
   JitterHook jitter;
   StagedRecurrence engine(machine_of(2));
   FrameStatistics statistics;
-  CommandColumns drawn;
+  CommandColumns room;
   std::int64_t number = 0;
   for (auto _ : state) {
-    for (const CommandColumns& frame : frames) {
-      drawn = frame;
-      jitter(number++, drawn);
-      statistics.add(engine.run({.cpu_before = kCpuBefore, .swap = kSwap, .vsync_period = kBlank, .commands = drawn}));
+    for (std::size_t k = 0; k < kFrames; ++k) {
+      room.submit_ps.swap(copies[k].submit_ps);
+      copy_gpu_times(frames[k], room);
+      if (kDrawn) jitter(number++, room);
+      statistics.add(engine.run(work_of(room)));
+      room.submit_ps.swap(copies[k].submit_ps);
     }
   }
   benchmark::DoNotOptimize(statistics);
   count_commands(state);
 }
-BENCHMARK(with_drawn_jitter)
-    ->Name("recurrence/vsync+2-in-flight+jitter-drawn+statistics")
+BENCHMARK(on_a_copy<true>)->Name("recurrence/vsync+2-in-flight+jitter-drawn+statistics")->Unit(benchmark::kMicrosecond);
+BENCHMARK(on_a_copy<false>)
+    ->Name("recurrence/vsync+2-in-flight+columns-copied+statistics")
     ->Unit(benchmark::kMicrosecond);
+
+// Eight seeds of a scene: the same commands, each seed with jitter of its own. So few frames that all seeds' columns fit
+// in a L2 cache, one by one and side by side alike.
+constexpr std::size_t kSeedFrames = 2;
+using SeedColumns = std::array<CommandColumns, kLanes>;
+
+std::vector<CommandColumns> make_seed_frames() {
+  std::vector<CommandColumns> frames = make_frames();
+  frames.resize(kSeedFrames);
+  return frames;
+}
+
+void count_seed_commands(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSeedFrames * kLanes * kCommands));
+}
+
+std::array<JitterHook, kLanes> jitter_of_seeds() {
+  return {JitterHook(1), JitterHook(2), JitterHook(3), JitterHook(4),
+          JitterHook(5), JitterHook(6), JitterHook(7), JitterHook(8)};
+}
+
+// [frame][seed], with jitter in them already.
+std::vector<SeedColumns> jittered_frames() {
+  auto jitter = jitter_of_seeds();
+  std::vector<SeedColumns> frames;
+  for (const CommandColumns& frame : make_seed_frames()) {
+    SeedColumns& seeds = frames.emplace_back();
+    for (std::size_t s = 0; s < kLanes; ++s) {
+      seeds[s] = frame;
+      jitter[s](static_cast<std::int64_t>(frames.size()), seeds[s]);
+    }
+  }
+  return frames;
+}
+
+LaneCommands side_by_side(const SeedColumns& seeds) {
+  LaneCommands lanes;
+  lanes.submit_ps = seeds[0].submit_ps;
+  lanes.resize(seeds[0].size());
+  std::array<const CommandColumns*, kLanes> columns;
+  for (std::size_t s = 0; s < kLanes; ++s) columns[s] = &seeds[s];
+  lanes.interleave(columns);
+  return lanes;
+}
+
+class LaneRun {
+ public:
+  void run(const LaneCommands& commands) {
+    LaneWork work{.swap = kSwap, .commands = commands};
+    work.cpu_before.fill(kCpuBefore);
+    work.vsync_period.fill(kBlank);
+    engine_.run(work, times_);
+    for (std::size_t s = 0; s < kLanes; ++s) statistics_[s].add(times_[s]);
+  }
+  const FrameStatistics& first() const { return statistics_[0]; }
+
+ private:
+  RecurrenceLanes engine_{machine_of(2)};
+  std::array<FrameTimes, kLanes> times_;
+  std::array<FrameStatistics, kLanes> statistics_{};
+};
+
+void seeds_one_by_one(benchmark::State& state) {
+  const std::vector<SeedColumns> frames = jittered_frames();
+  std::vector<StagedRecurrence> engines(kLanes, StagedRecurrence(machine_of(2)));
+  std::array<FrameStatistics, kLanes> statistics{};
+  for (auto _ : state) {
+    for (std::size_t s = 0; s < kLanes; ++s) {
+      for (const SeedColumns& seeds : frames) statistics[s].add(engines[s].run(work_of(seeds[s])));
+    }
+  }
+  benchmark::DoNotOptimize(statistics);
+  count_seed_commands(state);
+}
+BENCHMARK(seeds_one_by_one)->Name("seeds/one-by-one")->Unit(benchmark::kMicrosecond);
+
+void seeds_side_by_side(benchmark::State& state) {
+  std::vector<LaneCommands> frames;
+  for (const SeedColumns& seeds : jittered_frames()) frames.push_back(side_by_side(seeds));
+  LaneRun lanes;
+  for (auto _ : state) {
+    for (const LaneCommands& frame : frames) lanes.run(frame);
+  }
+  benchmark::DoNotOptimize(lanes.first());
+  count_seed_commands(state);
+}
+BENCHMARK(seeds_side_by_side)->Name("seeds/side-by-side")->Unit(benchmark::kMicrosecond);
+
+void drawn_one_by_one(benchmark::State& state) {
+  const std::vector<CommandColumns> frames = make_seed_frames();
+  auto jitter = jitter_of_seeds();
+  std::vector<StagedRecurrence> engines(kLanes, StagedRecurrence(machine_of(2)));
+  std::array<FrameStatistics, kLanes> statistics{};
+  std::vector<CommandColumns> rooms = frames;
+  std::int64_t number = 0;
+  for (auto _ : state) {
+    for (std::size_t s = 0; s < kLanes; ++s) {
+      for (std::size_t k = 0; k < kSeedFrames; ++k) {
+        copy_gpu_times(frames[k], rooms[k]);
+        jitter[s](number++, rooms[k]);
+        statistics[s].add(engines[s].run(work_of(rooms[k])));
+      }
+    }
+  }
+  benchmark::DoNotOptimize(statistics);
+  count_seed_commands(state);
+}
+BENCHMARK(drawn_one_by_one)->Name("seeds/jitter-drawn+one-by-one")->Unit(benchmark::kMicrosecond);
+
+// As Replications does it: each seed's columns, then all of them side by side.
+void drawn_side_by_side(benchmark::State& state) {
+  const std::vector<CommandColumns> frames = make_seed_frames();
+  auto jitter = jitter_of_seeds();
+  LaneRun lanes;
+  SeedColumns seeds;
+  seeds.fill(frames.front());
+  LaneCommands commands;
+  std::array<const CommandColumns*, kLanes> columns;
+  std::int64_t number = 0;
+  for (auto _ : state) {
+    for (const CommandColumns& frame : frames) {
+      for (std::size_t s = 0; s < kLanes; ++s) {
+        copy_gpu_times(frame, seeds[s]);
+        jitter[s](number, seeds[s]);
+        columns[s] = &seeds[s];
+      }
+      ++number;
+      commands.submit_ps = frame.submit_ps;
+      commands.resize(frame.size());
+      commands.interleave(columns);
+      lanes.run(commands);
+    }
+  }
+  benchmark::DoNotOptimize(lanes.first());
+  count_seed_commands(state);
+}
+BENCHMARK(drawn_side_by_side)->Name("seeds/jitter-drawn+side-by-side")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace framesim::bench

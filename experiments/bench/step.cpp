@@ -1,162 +1,153 @@
-// The whole step: culling, estimate, decision by robin-hood, simulation; visible and culled instances, and effects that
-// are not declared.
+// The whole step: culling, estimate, decision by robin-hood, simulation; visible and culled instances, effects that are
+// not declared, and 1.4 million trees one by one.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "experiments/bench/allocations.h"
-#include "experiments/bench/input.h"
-#include "policies/registry.h"
+#include "experiments/bench/draws.h"
+#include "experiments/bench/step_scene.h"
 #include "scenes/registry.h"
-#include "scenes/scene_workload.h"
-#include "sim/simulation.h"
 
 namespace framesim::bench {
 namespace {
 
-constexpr std::size_t kPoses = 16;
-constexpr double kTargetPerItem_s = 8e-6;  // neither all coarse nor all fine
+using Clock = std::chrono::steady_clock;
 
-ObjectType make_type(std::string name, double finest) {
-  ObjectType type{.name = std::move(name)};
-  for (const double share : {0.005, 0.05, 0.25, 1.0}) {
-    type.levels.push_back({.polygons = finest * share, .vertices = finest * share, .texture_bytes = 65536});
+// Made once, since a benchmark function is called several times, and stepped until all memory has been met.
+StepRun& run_of(std::size_t visible, std::size_t hidden, bool mixed, StepProfile* profile = nullptr,
+                const std::vector<std::string>& effects = {}) {
+  using Key = std::tuple<std::size_t, std::size_t, bool, bool, bool>;
+  static std::map<Key, std::unique_ptr<StepRun>> runs;
+  auto& run = runs[Key{visible, hidden, mixed, profile != nullptr, !effects.empty()}];
+  if (!run) {
+    run = std::make_unique<StepRun>(
+        make_step_scene(visible, hidden, mixed),
+        StepOptions{.effects = effects, .target_s = step_target_s(visible), .profile = profile});
+    for (std::size_t k = 0; k < 2 * kPoses; ++k) run->step();
   }
-  return type;
-}
-
-// The camera looks from the origin to -z and turns a little from pose to pose. `visible` spheres stand well inside the
-// view, `hidden` ones behind the eye, both spread evenly over a box whose size grows with their number, as a larger
-// scene does.
-Scene make_scene(std::size_t visible, std::size_t hidden) {
-  Scene scene;
-  scene.name = "benchmark";
-  scene.screen = {.width = 1280, .height = 720, .far_m = 1e6};
-  scene.types = {make_type("shrub", 2000), make_type("tree", 20000), make_type("house", 8000)};
-  scene.view_levels.resize(scene.types.size());
-  SplitMix random(visible + hidden);
-  const auto place = [&](const glm::dvec3& centre) {
-    const double radius = 0.5 + 2 * random.uniform();
-    scene.instances.centre.push_back(centre);
-    scene.instances.radius_m.push_back(static_cast<float>(radius));
-    scene.instances.area_m2.push_back(static_cast<float>(4 * radius * radius));
-    scene.instances.type.push_back(static_cast<TypeId>(random.bits() % scene.types.size()));
-    scene.instances.kind.push_back(ItemKind::levels);
-  };
-  const auto spread = [&](std::size_t count, bool in_front) {
-    const double side = 2 * std::cbrt(static_cast<double>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = (random.uniform() - 0.5) * side, y = (random.uniform() - 0.5) * side / 2;
-      const double z = 2 * side + random.uniform() * 4 * side;
-      place({x, y, in_front ? -z : z});
-    }
-  };
-  spread(visible, true);
-  spread(hidden, false);
-  for (std::size_t k = 0; k < kPoses; ++k) {
-    const double angle = 0.01 * std::sin(2 * 3.141592653589793 * static_cast<double>(k) / kPoses);
-    scene.camera.poses.push_back({.forward = {std::sin(angle), 0, -std::cos(angle)}});
-  }
-  scene.machine = load_machine({.name = "desktop2020"});
-  scene.logic = {.base_s = 1e-3};
-  return scene;
-}
-
-// The scene's camera path over and over.
-class EndlessSource final : public WorkloadSource {
- public:
-  explicit EndlessSource(const Scene& scene) : source_(make_workload_source(scene)), facts_(source_->scene()) {
-    facts_.frames = std::numeric_limits<std::int64_t>::max();
-  }
-  const SceneFacts& scene() const override { return facts_; }
-  VisibilityCounts fill(std::int64_t frame, const WorkloadRequest& request, Workload& workload) override {
-    return source_->fill(frame % static_cast<std::int64_t>(kPoses), request, workload);
-  }
-
- private:
-  std::unique_ptr<WorkloadSource> source_;
-  SceneFacts facts_;
-};
-
-template <class Entry>
-auto make(std::string_view kind, std::span<const Entry> entries, const char* name) {
-  return find_entry(kind, entries, {.name = name}).make({});
-}
-
-struct Run {
-  explicit Run(std::size_t visible, std::size_t hidden) : scene(make_scene(visible, hidden)), source(scene) {
-    target_s = kTargetPerItem_s * static_cast<double>(visible) + 5e-3;
-    simulation = std::make_unique<Simulation>(SimulationParts{.scene = source,
-                                                              .policy = *policy,
-                                                              .planner = *planner,
-                                                              .estimator = *estimator,
-                                                              .machine = machine,
-                                                              .logic = scene.logic},
-                                              SimulationConfig{.target_s = target_s});
-    for (std::size_t k = 0; k < 2 * kPoses; ++k) simulation->step();
-  }
-
-  Scene scene;
-  EndlessSource source;
-  std::unique_ptr<Policy> policy = make("policy", policies(), "robin-hood");
-  std::unique_ptr<Planner> planner = make("planner", planners(), "inverse");
-  std::unique_ptr<Estimator> estimator = make("estimator", estimators(), "two-stage");
-  Machine machine{scene.machine};
-  double target_s = 0;
-  std::unique_ptr<Simulation> simulation;
-};
-
-// Made once: a benchmark function is called several times.
-Run& run_of(std::size_t visible, std::size_t hidden) {
-  static std::map<std::pair<std::size_t, std::size_t>, std::unique_ptr<Run>> runs;
-  auto& run = runs[{visible, hidden}];
-  if (!run) run = std::make_unique<Run>(visible, hidden);
   return *run;
 }
 
-void step_through(benchmark::State& state, std::size_t hidden) {
-  Run& run = run_of(static_cast<std::size_t>(state.range(0)), hidden);
-  std::int64_t allocated = 0, visible = 0, frames = 0, drawn = 0, finest = 0, coarse = 0;
-  for (auto _ : state) {
-    const std::int64_t allocated_before = allocations();
-    const FrameRecord& record = run.simulation->step();
+// What the records of the steps and the counters of this program say of them.
+struct Counts {
+  std::int64_t allocated = 0, draws = 0, event_frames = 0, visible = 0, frames = 0, drawn = 0, finest = 0, coarse = 0;
+
+  template <class Step>
+  void count(Step step) {
+    const std::int64_t allocated_before = allocations(), drawn_before = random_draws();
+    const FrameRecord& record = step();
     allocated += allocations() - allocated_before;
+    draws += random_draws() - drawn_before;
+    event_frames += record.fidelity == 2;
     visible += record.visible;
     drawn += record.drawn;
     finest += record.mix_finest;
     coarse += record.mix_coarse;
     ++frames;
   }
-  state.SetItemsProcessed(visible);
-  const auto share = [&](std::int64_t count) { return static_cast<double>(count) / static_cast<double>(visible); };
-  state.counters["allocations"] = static_cast<double>(allocated);
-  state.counters["visible"] = static_cast<double>(visible) / static_cast<double>(frames);
-  state.counters["drawn"] = share(drawn);
-  state.counters["finest"] = share(finest);
-  state.counters["coarse"] = share(coarse);
+  void write(benchmark::State& state) const {
+    state.SetItemsProcessed(visible);
+    const auto share = [&](std::int64_t n) { return static_cast<double>(n) / static_cast<double>(visible); };
+    state.counters["allocations"] = static_cast<double>(allocated);
+    state.counters["visible"] = static_cast<double>(visible) / static_cast<double>(frames);
+    state.counters["drawn"] = share(drawn);
+    state.counters["finest"] = share(finest);
+    state.counters["coarse"] = share(coarse);
+  }
+};
+
+void step_through(benchmark::State& state, StepRun& run) {
+  Counts counts;
+  for (auto _ : state) counts.count([&]() -> const FrameRecord& { return run.step(); });
+  counts.write(state);
 }
 
-void step_visible(benchmark::State& state) { step_through(state, 0); }
+void step_visible(benchmark::State& state) {
+  step_through(state, run_of(static_cast<std::size_t>(state.range(0)), 0, false));
+}
 BENCHMARK(step_visible)
     ->Name("step/visible")
     ->RangeMultiplier(10)
     ->Range(1000, 1'000'000)
     ->Unit(benchmark::kMicrosecond);
 
-void step_culled(benchmark::State& state) { step_through(state, static_cast<std::size_t>(state.range(1))); }
-BENCHMARK(step_culled)
-    ->Name("step/culled")
-    ->Args({1000, 250'000})
-    ->Args({1000, 500'000})
-    ->Args({1000, 1'000'000})
-    ->Unit(benchmark::kMicrosecond);
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// 1,000 visible instances and more and more that are not. Steps of the three scenes take turns and the median of each is
+// told, so that whatever disturbs the machine disturbs all three.
+void culled(benchmark::State& state, bool mixed) {
+  constexpr std::size_t kVisible = 1000;
+  constexpr std::array<std::size_t, 3> kHidden = {250'000, 500'000, 1'000'000};
+  std::array<std::vector<double>, kHidden.size()> times_us;
+  for (const std::size_t hidden : kHidden) run_of(kVisible, hidden, mixed);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kHidden.size(); ++i) {
+      StepRun& run = run_of(kVisible, kHidden[i], mixed);
+      const Clock::time_point begin = Clock::now();
+      run.step();
+      times_us[i].push_back(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
+    }
+  }
+  for (std::size_t i = 0; i < kHidden.size(); ++i) {
+    state.counters[std::to_string(kHidden[i]) + " hidden us"] = median(times_us[i]);
+  }
+}
+void step_culled(benchmark::State& state) { culled(state, false); }
+void step_culled_mixed(benchmark::State& state) { culled(state, true); }
+BENCHMARK(step_culled)->Name("step/culled")->Unit(benchmark::kMicrosecond);
+// Hidden instances between the visible ones, so that no two of these share a cache line of the scene.
+BENCHMARK(step_culled_mixed)->Name("step/culled-mixed")->Unit(benchmark::kMicrosecond);
+
+// Where the time goes. `parts` is the sum of the parts' times over the time of the steps by a clock around them.
+void step_profile(benchmark::State& state) {
+  static StepProfile profile;
+  StepRun& run = run_of(static_cast<std::size_t>(state.range(0)), 0, false, &profile);
+  profile = {};
+  std::int64_t visible = 0, step_ns = 0, parts_ns = 0;
+  for (auto _ : state) {
+    const Clock::time_point begin = Clock::now();
+    visible += run.step().visible;
+    step_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+  }
+  state.SetItemsProcessed(visible);
+  for (std::size_t part = 0; part < kStepParts; ++part) {
+    parts_ns += profile.part_ns[part];
+    state.counters[std::string(kStepPartNames[part]) + " ns/item"] =
+        static_cast<double>(profile.part_ns[part]) / static_cast<double>(visible);
+  }
+  state.counters["parts"] = static_cast<double>(parts_ns) / static_cast<double>(step_ns);
+}
+BENCHMARK(step_profile)->Name("step/profile")->Arg(1000)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
 
 // A frame without any effect, small, so that what a frame costs beside its items shows.
-void step_undeclared(benchmark::State& state) { step_through(state, 0); }
+void step_undeclared(benchmark::State& state) {
+  StepRun& run = run_of(static_cast<std::size_t>(state.range(0)), 0, false);
+  Counts counts;
+  for (auto _ : state) counts.count([&]() -> const FrameRecord& { return run.step(); });
+  counts.write(state);
+  state.counters["draws"] = static_cast<double>(counts.draws);
+  state.counters["event frames"] = static_cast<double>(counts.event_frames);
+}
 BENCHMARK(step_undeclared)->Name("step/undeclared")->Arg(100)->Unit(benchmark::kMicrosecond);
+
+// The same with an effect that draws: the counter of draws counts.
+void step_jitter(benchmark::State& state) {
+  StepRun& run = run_of(static_cast<std::size_t>(state.range(0)), 0, false, nullptr, {"jitter"});
+  Counts counts;
+  for (auto _ : state) counts.count([&]() -> const FrameRecord& { return run.step(); });
+  state.counters["draws"] = static_cast<double>(counts.draws) / static_cast<double>(counts.frames);
+}
+BENCHMARK(step_jitter)->Name("step/jitter")->Arg(100)->Unit(benchmark::kMicrosecond);
 
 // What such a frame pays for effects: it finds each list of them empty.
 void empty_hooks(benchmark::State& state) {
@@ -171,6 +162,42 @@ void empty_hooks(benchmark::State& state) {
   }
 }
 BENCHMARK(empty_hooks)->Name("step/empty-hooks");
+
+// styria with each of its 1.4 million trees by itself. An iteration is a frame of the camera path; memory is what the
+// run needs beside the scene.
+void step_styria(benchmark::State& state, const std::string& scene_name, const std::string& policy) {
+  struct Styria {
+    std::unique_ptr<StepRun> run;
+    std::int64_t bytes = 0;
+  };
+  static std::map<std::string, Styria> runs;
+  Styria& styria = runs[scene_name + ' ' + policy];
+  if (!styria.run) {
+    Scene scene = load_scene(parse_spec(scene_name));
+    const double target_s = scene.targets_s.front();
+    const std::int64_t before = bytes_in_use();
+    styria.run = std::make_unique<StepRun>(std::move(scene), StepOptions{.policy = policy, .target_s = target_s});
+    for (std::int64_t k = 0; k < styria.run->poses(); ++k) styria.run->step();
+    styria.bytes = bytes_in_use() - before;
+  }
+  Counts counts;
+  for (auto _ : state) counts.count([&]() -> const FrameRecord& { return styria.run->step(); });
+  counts.write(state);
+  state.counters["MiB beside the scene"] = static_cast<double>(styria.bytes) / (1 << 20);
+}
+BENCHMARK_CAPTURE(step_styria, mixed, "styria:group=1", "mixed-gradient")
+    ->Name("step/styria/mixed-gradient")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(step_styria, robin, "styria:group=1", "robin-hood")
+    ->Name("step/styria/robin-hood")
+    ->Unit(benchmark::kMillisecond);
+// Without small detail culling every tree in the view is an item.
+BENCHMARK_CAPTURE(step_styria, all_mixed, "styria:group=1,smallest=0", "mixed-gradient")
+    ->Name("step/styria-every-tree/mixed-gradient")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(step_styria, all_robin, "styria:group=1,smallest=0", "robin-hood")
+    ->Name("step/styria-every-tree/robin-hood")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace framesim::bench

@@ -1,10 +1,12 @@
 #include "policies/knapsack/hull_greedy.h"
 
+#include <limits>
+
 #include "policies/knapsack/upper_hull.h"
 
 namespace framesim {
 
-void HullGreedy::build_hulls(LevelChoice& choice) {
+void HullGreedy::build_hulls(LevelChoice& choice, Misfit misfit) {
   hull_.clear();
   hull_begin_.clear();
   start_.clear();
@@ -13,7 +15,8 @@ void HullGreedy::build_hulls(LevelChoice& choice) {
     start_.push_back(static_cast<std::int16_t>(level));
     hull_begin_.push_back(static_cast<std::uint32_t>(hull_.size()));
     const double cost_s = choice.cost_s(i, level);
-    const HullStart start{cost_s, choice.benefit(i, level), cost_s + choice.left_s()};
+    const double most_s = misfit == Misfit::stop ? std::numeric_limits<double>::infinity() : cost_s + choice.left_s();
+    const HullStart start{cost_s, choice.benefit(i, level), most_s};
     choice.count(append_upper_hull(choice.workload(), i, start, order_, hull_));
   }
   hull_begin_.push_back(static_cast<std::uint32_t>(hull_.size()));
@@ -30,7 +33,7 @@ void HullGreedy::queue(const LevelChoice& choice, std::size_t item) {
 
 // Takes upgrades by falling slope. An item whose upgrade does not fit is out: its later ones cost more. `taken` stays
 // as it is.
-void HullGreedy::upgrade(LevelChoice& choice, std::size_t taken) {
+void HullGreedy::upgrade(LevelChoice& choice, std::size_t taken, Misfit misfit) {
   heap_.reset(choice.size());
   misfits_.clear();
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -46,6 +49,7 @@ void HullGreedy::upgrade(LevelChoice& choice, std::size_t taken) {
     if (!choice.fits(item, to)) {
       if (misfits_.empty()) relaxed_gain_ = gain.value() + slope * choice.left_s();
       misfits_.push_back(item);
+      if (misfit == Misfit::stop) break;
       continue;
     }
     gain.add(-choice.benefit(item, choice.level(item)));
@@ -82,8 +86,8 @@ void HullGreedy::fill_misfits(LevelChoice& choice) const {
 }
 
 double HullGreedy::improve(LevelChoice& choice) {
-  build_hulls(choice);
-  upgrade(choice, choice.size());
+  build_hulls(choice, Misfit::skip);
+  upgrade(choice, choice.size(), Misfit::skip);
   const double relaxed_gain = relaxed_gain_;
   const Single single = best_single(choice);
   if (single.gain > gain_) {
@@ -91,10 +95,16 @@ double HullGreedy::improve(LevelChoice& choice) {
       if (choice.level(i) != start_[i]) choice.change(i, start_[i]);
     }
     choice.change(single.item, single.level);
-    upgrade(choice, single.item);
+    upgrade(choice, single.item, Misfit::skip);
   }
   fill_misfits(choice);
   return relaxed_gain;
+}
+
+double HullGreedy::improve_until_misfit(LevelChoice& choice) {
+  build_hulls(choice, Misfit::stop);
+  upgrade(choice, choice.size(), Misfit::stop);
+  return relaxed_gain_;
 }
 
 }  // namespace framesim

@@ -21,6 +21,11 @@ class HullGreedy {
   // Returns the gain of the linear relaxation (Sinha and Zoltners 1979): no choice from that start gains more.
   double improve(LevelChoice& choice);
 
+  // The same upgrades, ended by the first that does not fit: no guarantee, but what is drawn is the first part of one
+  // sequence, so a larger budget lowers no item's level, and no far item takes what a near one's misfit left. Levels
+  // that do not fit beside the start stay in the sequence. Returns the gain of the linear relaxation.
+  double improve_until_misfit(LevelChoice& choice);
+
  private:
   struct Single {
     double gain = 0;
@@ -28,9 +33,11 @@ class HullGreedy {
     int level = 0;
   };
 
-  void build_hulls(LevelChoice& choice);
+  enum class Misfit { skip, stop };
+
+  void build_hulls(LevelChoice& choice, Misfit misfit);
   void queue(const LevelChoice& choice, std::size_t item);
-  void upgrade(LevelChoice& choice, std::size_t taken);
+  void upgrade(LevelChoice& choice, std::size_t taken, Misfit misfit);
   Single best_single(const LevelChoice& choice) const;
   void fill_misfits(LevelChoice& choice) const;
 

@@ -28,14 +28,42 @@ Meeting meet_sphere(std::span<const Plane> volume, const glm::dvec3& centre, dou
   return result;
 }
 
+namespace {
+
+// Calls visit(i) for each bit i of `words` that is set, ascending.
+template <class Visit>
+void for_each_bit(std::span<const std::uint64_t> words, Visit visit) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    for (std::uint64_t word = words[i]; word != 0; word &= word - 1) {
+      visit(i * 64 + static_cast<std::size_t>(std::countr_zero(word)));
+    }
+  }
+}
+
+}  // namespace
+
+void RowMarks::resize(std::size_t rows) {
+  words_.assign((rows + 63) / 64, 0);
+  used_.assign((words_.size() + 63) / 64, 0);
+}
+
+std::size_t RowMarks::count() const {
+  std::size_t count = 0;
+  for_each_bit(used_, [&](std::size_t word) { count += static_cast<std::size_t>(std::popcount(words_[word])); });
+  return count;
+}
+
 void RowMarks::drain(std::vector<std::uint32_t>& rows) {
-  rows.clear();
-  for (std::size_t i = 0; i < words_.size(); ++i) {
+  rows.resize(count());
+  std::uint32_t* next = rows.data();
+  for_each_bit(used_, [&](std::size_t i) {
+    const auto first = static_cast<std::uint32_t>(i * 64);
     for (std::uint64_t word = words_[i]; word != 0; word &= word - 1) {
-      rows.push_back(static_cast<std::uint32_t>(i * 64) + static_cast<std::uint32_t>(std::countr_zero(word)));
+      *next++ = first + static_cast<std::uint32_t>(std::countr_zero(word));
     }
     words_[i] = 0;
-  }
+  });
+  std::fill(used_.begin(), used_.end(), 0);
 }
 
 BoundsTree::BoundsTree(const Instances& instances, std::vector<std::uint32_t> rows) : rows_(std::move(rows)) {

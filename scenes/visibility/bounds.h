@@ -20,16 +20,23 @@ enum class Meeting : std::uint8_t { outside, crosses, inside };
 // though it is outside: the usual conservative test against planes.
 Meeting meet_sphere(std::span<const Plane> volume, const glm::dvec3& centre, double radius);
 
-// The rows found in one frame, as a set that gives them back ascending.
+// The rows found in one frame, as a set that gives them back ascending. A bit a row, and a bit for each 64 of those that
+// says whether there are any: what is given back costs as much as there is of it, and a look at a 4096th of all rows.
 class RowMarks {
  public:
-  void resize(std::size_t rows) { words_.assign((rows + 63) / 64, 0); }
-  void mark(std::uint32_t row) { words_[row / 64] |= std::uint64_t{1} << (row % 64); }
+  void resize(std::size_t rows);
+  void mark(std::uint32_t row) {
+    words_[row / 64] |= std::uint64_t{1} << (row % 64);
+    used_[row / 4096] |= std::uint64_t{1} << (row / 64 % 64);
+  }
   // Replaces `rows` by the marked rows, ascending, and empties the set.
   void drain(std::vector<std::uint32_t>& rows);
 
  private:
+  std::size_t count() const;
+
   std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> used_;  // which words are not 0
 };
 
 // Boxes around the bounding spheres of some rows: split at the median of the longest axis of the centres, down to leaves

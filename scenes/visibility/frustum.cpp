@@ -1,8 +1,6 @@
 // View frustum culling (Robin Hood 2005, section 7, uses a hierarchy of bounding boxes): boxes over the bounding spheres of
 // a flat scene, or the scene's own tree. O(visible + boundary) bound tests.
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "scenes/visibility/bounds.h"
@@ -77,13 +75,6 @@ Frustum make_frustum(const Pose& pose, const Screen& screen) {
 }
 
 double focal_length_px(const Screen& screen) { return screen.height / 2.0 / std::tan(screen.fov_y_rad / 2); }
-
-double projected_area_px(double radius_m, double distance_m, double depth_m, double focal_px, double screen_px) {
-  if (depth_m <= -radius_m) return 0;
-  if (distance_m <= radius_m) return screen_px;
-  const double radius_px = focal_px * radius_m / distance_m;
-  return std::min(screen_px, std::numbers::pi * radius_px * radius_px);
-}
 
 double projected_area_px(double radius_m, double distance_m, double depth_m, const Screen& screen) {
   return projected_area_px(radius_m, distance_m, depth_m, focal_length_px(screen),

@@ -42,6 +42,7 @@ class CrossFade : public Effect {
   explicit CrossFade(const CrossFadeParameters& parameters) : frames_(static_cast<std::int16_t>(parameters.frames)) {}
 
   Hook hooks() const override { return Hook::commands; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     if (frames_ == 0) return "frames is 0: only the new level is drawn";

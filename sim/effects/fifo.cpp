@@ -36,6 +36,7 @@ class Fifo : public Effect {
       : primitive_(static_cast<int>(parameters.primitive)), pixel_(static_cast<int>(parameters.pixel)) {}
 
   Hook hooks() const override { return Hook::machine; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     const MachineProfile& machine = context.machine;

@@ -37,6 +37,7 @@ class Focus : public Effect {
       : weight_(parameters.weight), half_rad_(parameters.half / 180 * std::numbers::pi) {}
 
   Hook hooks() const override { return Hook::workload; }
+  SeedUse seed_use() const override { return SeedUse::none; }
   Columns columns() const override { return Columns::view_angle; }
 
   std::optional<std::string> inert(const EffectContext&) const override {

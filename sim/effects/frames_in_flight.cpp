@@ -28,6 +28,7 @@ class FramesInFlight : public Effect {
   explicit FramesInFlight(const FramesInFlightParameters& parameters) : frames_(static_cast<int>(parameters.n)) {}
 
   Hook hooks() const override { return Hook::machine; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     const Overlap& overlap = context.machine.overlap;

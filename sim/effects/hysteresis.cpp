@@ -36,6 +36,7 @@ class Hysteresis : public Effect {
 
   // It changes no command: that hook is where the selection is known.
   Hook hooks() const override { return Hook::workload | Hook::commands; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     if (weight_ == 0) return "a change of level does not count: weight is 0";

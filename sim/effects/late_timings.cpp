@@ -45,6 +45,7 @@ class LateTimings : public Effect {
   explicit LateTimings(const LateTimingsParameters& parameters) : ring_(static_cast<std::size_t>(parameters.frames)) {}
 
   Hook hooks() const override { return Hook::outcome; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext&) const override {
     if (!ring_.empty()) return std::nullopt;

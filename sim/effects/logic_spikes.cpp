@@ -73,6 +73,7 @@ class LogicSpikes : public Effect {
       : p_(parameters), task_(std::move(task)), stream_(seed, "logic-spikes") {}
 
   Hook hooks() const override { return Hook::frame; }
+  SeedUse seed_use() const override { return p_.pattern == kPoisson ? SeedUse::times : SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     if (duration(context.logic).count() == 0) {

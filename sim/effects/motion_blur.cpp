@@ -42,6 +42,7 @@ class MotionBlur : public Effect {
   explicit MotionBlur(const MotionBlurParameters& parameters) : weight_(parameters.weight), gone_(parameters.gone) {}
 
   Hook hooks() const override { return Hook::workload; }
+  SeedUse seed_use() const override { return SeedUse::none; }
   Columns columns() const override { return Columns::view_angle; }
 
   std::optional<std::string> inert(const EffectContext&) const override {

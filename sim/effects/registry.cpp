@@ -18,6 +18,8 @@ namespace framesim {
   effect(cross_fade_effect)      \
   effect(jitter_effect)          \
   effect(thermal_effect)         \
+  effect(streaming_effect)       \
+  effect(preemption_effect)      \
   effect(vsync_effect)           \
   effect(late_timings_effect)
 // clang-format on

@@ -31,6 +31,7 @@ class Semantics : public Effect {
   explicit Semantics(const SemanticsParameters& parameters) : weight_(parameters.weight) {}
 
   Hook hooks() const override { return Hook::workload; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     if (weight_ == 0) return "importance does not count: weight is 0";

@@ -36,6 +36,7 @@ class Submission : public Effect {
   explicit Submission(const SubmissionParameters& parameters) : parameters_(parameters) {}
 
   Hook hooks() const override { return Hook::machine; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext& context) const override {
     const MachineProfile& machine = context.machine;

@@ -50,6 +50,7 @@ class Thermal : public Effect {
   explicit Thermal(const ThermalParameters& parameters) : p_(parameters) {}
 
   Hook hooks() const override { return Hook::commands | Hook::after; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext&) const override {
     if (p_.heat == 0) return "the GPU does not heat up: heat is 0";

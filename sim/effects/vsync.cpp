@@ -27,6 +27,7 @@ class Vsync : public Effect {
   explicit Vsync(const VsyncParameters& parameters) : period_(std::llround(parameters.rate * 1e12)) {}
 
   Hook hooks() const override { return Hook::frame; }
+  SeedUse seed_use() const override { return SeedUse::none; }
 
   std::optional<std::string> inert(const EffectContext&) const override {
     if (period_.count() > 0) return std::nullopt;

@@ -91,6 +91,8 @@ class LinearFeedback final : public Estimator {
 
   double logic_s(std::int64_t visible) const override { return last_logic_s_.value_or(logic_.measure_s(visible)); }
 
+  bool learns() const override { return true; }
+
   void correct(const EstimateOutcome& outcome) override {
     last_logic_s_ = outcome.actual_logic_s;
     const double estimated = outcome.estimated_draw_s;

@@ -98,10 +98,8 @@ class TwoStage final : public Estimator {
   }
 
   double cost_s(const Facts& facts, double area_px) const override {
-    if (facts.stated_cost_s) return std::max(*facts.stated_cost_s, kSmallestCostS);
-    const auto a = static_cast<std::size_t>(facts.algorithm);
-    const double pixel = pixel_s_[a] * facts.coverage * area_px;
-    return std::max(combined(primitive_s(facts, primitive_[a]), pixel, parameters_.combine), kSmallestCostS);
+    const LevelCost level = level_cost(facts);
+    return std::max(combined(level.primitive_s, level.pixel_s * area_px, parameters_.combine), kSmallestCostS);
   }
 
   double setup_s(const Facts& facts) const override {
@@ -109,11 +107,42 @@ class TwoStage final : public Estimator {
     return primitive_[static_cast<std::size_t>(facts.algorithm)][kDrawsPart] * facts.draws;
   }
 
+  // Level by level with what does not depend on the view worked out before, where that is less work than it saves.
+  void price(Workload& workload) const override {
+    if (workload.static_facts > workload.size()) return Estimator::price(workload);
+    levels_.clear();
+    for (std::uint32_t f = 0; f < workload.static_facts; ++f) levels_.push_back(level_cost(workload.facts[f]));
+    size_columns(workload);
+    for (std::size_t i = 0; i < workload.size(); ++i) {
+      const std::size_t begin = workload.level_begin[i], count = workload.levels(i), first = workload.facts_begin[i];
+      if (workload.kind[i] == ItemKind::curve || first + count > levels_.size()) {
+        price_item(workload, i);
+        continue;
+      }
+      const double area_px = workload.projected_area_px[i];
+      for (std::size_t l = 0; l < count; ++l) {
+        const LevelCost& level = levels_[first + l];
+        const double cost = combined(level.primitive_s, level.pixel_s * area_px, parameters_.combine);
+        workload.cost_s[begin + l] = std::max(cost, kSmallestCostS);
+      }
+    }
+  }
+
   double logic_s(std::int64_t visible) const override {
     return logic_base_s_ + logic_per_item_s_ * static_cast<double>(visible);
   }
 
  private:
+  // Of one representation: its per-primitive time, and its per-pixel time for a pixel of projected area.
+  struct LevelCost {
+    double primitive_s = 0, pixel_s = 0;
+  };
+  LevelCost level_cost(const Facts& facts) const {
+    if (facts.stated_cost_s) return {.primitive_s = *facts.stated_cost_s, .pixel_s = 0};
+    const auto a = static_cast<std::size_t>(facts.algorithm);
+    return {.primitive_s = primitive_s(facts, primitive_[a]), .pixel_s = pixel_s_[a] * facts.coverage};
+  }
+
   // The straight line through two samples: nothing visible, and everything.
   void fit_logic(const LogicLoad& logic, const SceneFacts& scene) {
     const LogicBenchmark benchmark(logic);
@@ -127,6 +156,7 @@ class TwoStage final : public Estimator {
   std::array<double, kAlgorithmCount> pixel_s_{};
   double logic_base_s_ = 0;
   double logic_per_item_s_ = 0;
+  mutable std::vector<LevelCost> levels_;  // scratch of price(): of the facts that are the same in every frame
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "policies/registry.h"
 #include "scenes/registry.h"
 #include "scenes/scene_workload.h"
+#include "sim/event_engine.h"
 #include "sim/simulation.h"
 #include "tests/catch.h"
 
@@ -59,11 +60,14 @@ std::int64_t allocations_in_steady_state(const std::string& scene_text, const Po
   const auto estimator = find_entry("estimator", estimators(), {"table"}).make({});
   std::vector<std::unique_ptr<Effect>> made;
   std::vector<Effect*> active;
+  MachineProfile profile = scene.machine;
   for (const std::string& name : effect_names) {
-    made.push_back(find_entry("effect", effects(), {name}).make({}, 1));
+    const Spec spec = parse_spec(name);
+    made.push_back(find_entry("effect", effects(), spec).make(spec.settings, 1));
     active.push_back(made.back().get());
+    if (has(active.back()->hooks(), Hook::machine)) active.back()->on_machine(profile);
   }
-  const Machine machine(scene.machine);
+  const Machine machine(profile);
   Simulation simulation({looped, *policy, *planner, *estimator, machine, scene.logic, active},
                         {.target_s = scene.targets_s[0]});
   // Feedback policies wander through levels for a while; their columns have met their largest frame after some rounds.
@@ -99,6 +103,36 @@ TEST_CASE("no effect allocates in steady state, alone or with all others") {
   }
   CHECK(allocations_in_steady_state("street", policy, all) == 0);
   CHECK(allocations_in_steady_state("museum", policy, all) == 0);
+}
+
+// Too little memory for the scene, so that each frame uploads; facts made for a frame in the second scene.
+TEST_CASE("streaming and preemption do not allocate in steady state") {
+  const PolicyEntry& policy = find_entry("policy", policies(), {"robin-hood"});
+  for (const char* scene : {"dong-forest", "graphicon-forest:representation=view-levels"}) {
+    CAPTURE(scene);
+    CHECK(allocations_in_steady_state(scene, policy, {"streaming:memory=0.2", "preemption:period=3ms"}) == 0);
+  }
+}
+
+// Three frames in flight, so that a checkpoint is taken in each; a bus and a client, so that events are cut short.
+TEST_CASE("the event engine does not allocate in steady state, with checkpoints, a bus and another client") {
+  MachineProfile machine;
+  machine.overlap.frames_in_flight = 3;
+  machine.bus.chunk = Picoseconds(5);
+  machine.client = {.period = Picoseconds(50), .first = Picoseconds(7), .duration = Picoseconds(9)};
+  CommandColumns commands;
+  for (int i = 0; i < 200; ++i) {
+    commands.submit_ps.push_back(i % 3), commands.primitive_ps.push_back(i % 7), commands.pixel_ps.push_back(i % 5);
+    commands.upload_ps.push_back(i % 10 == 0 ? 12 : 0), commands.fetch_ps.push_back(i % 2 == 0 ? i % 7 / 2 : 0);
+  }
+  for (const bool between_commands : {false, true}) {
+    machine.client.between_commands = between_commands;
+    EventEngine engine(machine);
+    for (int frame = 0; frame < 20; ++frame) engine.run({.commands = commands});
+    const std::int64_t before = allocations;
+    for (int frame = 0; frame < 50; ++frame) engine.run({.commands = commands});
+    CHECK(allocations - before == 0);
+  }
 }
 
 TEST_CASE("the counter of this test counts") {

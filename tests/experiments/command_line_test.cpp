@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/registry.h"
+#include "sim/effect.h"
 #include "tests/catch.h"
 #include "tests/experiments/program.h"
 
@@ -234,8 +236,40 @@ TEST_CASE("command line: explain says which engine follows, and which columns an
   CHECK(has(explained({}), "engine         recurrence: exact for all active effects, overlap staged:1"));
   CHECK(has(explained({"--fidelity", "events"}), "engine         events: asked for; exact"));
   CHECK(has(explained({"--overlap", "serial"}), "engine         closed-form: overlap serial is one formula a frame"));
+  CHECK(has(explained({"--effect", "preemption"}),
+            "engine         events: exact for all active effects, overlap staged:1; needed for preemption\n"));
+  CHECK(has(explained({"--effect", "preemption", "--effect", "streaming:preload=no", "--effect", "jitter"}),
+            "needed for streaming, preemption\n"));
+  CHECK(has(explained({"--effect", "streaming"}), "engine         recurrence: exact"));  // the street fits: inert
   CHECK(has(explained({"--policy", "static", "--effect", "focus"}), "view angle         computed for effects focus\n"));
   CHECK(has(explained({"--effect", "focus:weight=0"}), "view angle         not computed\n"));
+}
+
+TEST_CASE("command line: explain lists what an engine that was asked for leaves out") {
+  const auto explained = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"explain", "street"});
+    return run_program(more).out;
+  };
+  const std::string formula = explained({"--fidelity", "closed-form", "--effect", "preemption"});
+  CHECK(has(formula, "engine         closed-form: asked for; not exact, as events would be"));
+  CHECK(has(formula, "\nleaves out     overlap staged:1"));
+  CHECK(has(formula, "\nleaves out     preemption: "));
+  const std::string staged = explained({"--fidelity", "recurrence", "--overlap", "serial"});
+  CHECK(has(staged, "engine         recurrence: asked for; not exact, as closed-form would be"));
+  CHECK(has(staged, "\nleaves out     overlap serial"));
+  CHECK_FALSE(has(explained({"--fidelity", "recurrence"}), "leaves out"));
+  CHECK_FALSE(has(explained({"--fidelity", "events", "--effect", "preemption"}), "leaves out"));
+}
+
+TEST_CASE("command line: explain works on every built-in scene, and names each effect") {
+  for (const BuiltIn& scene : built_in_scenes()) {
+    const ProgramRun run = run_program({"explain", std::string(scene.name)});
+    CAPTURE(scene.name, run.out, run.err);
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.empty());
+    CHECK(has(run.out, "\nengine         "));
+    for (const EffectEntry& effect : effects()) CHECK(has(run.out, "\n  " + std::string(effect.name) + " "));
+  }
 }
 
 TEST_CASE("command line: wrong words are refused with exit code 2 and the legal ones") {
@@ -266,13 +300,41 @@ TEST_CASE("command line: wrong words are refused with exit code 2 and the legal 
   check_refused({"compare", "--scenes", "street", "-o", "/nonexistent/t.csv"}, 2, {"/nonexistent"});
 }
 
-TEST_CASE("command line: an engine that does not fit the overlap is refused") {
-  check_refused({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "recurrence"}, 2,
-                {"overlap 'serial'", "closed-form"});
-  check_refused({"run", "street", "--policy", "static", "--fidelity", "closed-form"}, 2,
-                {"overlap 'staged", "paper2005"});
-  CHECK(run_program({"run", "street", "--policy", "static", "--overlap", "serial", "--fidelity", "closed-form"})
-            .exit_code == 0);
+TEST_CASE("command line: an engine that is not exact runs, and a note says what it leaves out") {
+  const auto with = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "street", "--policy", "static", "--frames", "5"});
+    const ProgramRun run = run_program(more);
+    CAPTURE(more, run.err);
+    CHECK(run.exit_code == 0);
+    return run;
+  };
+  const std::string note = "framesim: note: --fidelity ";
+  CHECK(has(with({"--fidelity", "closed-form"}).err, note + "closed-form leaves out: overlap staged:1"));
+  CHECK(has(with({"--overlap", "serial", "--fidelity", "recurrence"}).err,
+            note + "recurrence leaves out: overlap serial"));
+  CHECK(has(with({"--effect", "preemption", "--fidelity", "recurrence"}).err, "never comes"));
+  CHECK(with({"--fidelity", "closed-form", "--quiet"}).err.empty());
+  CHECK_FALSE(has(with({"--overlap", "serial", "--fidelity", "closed-form"}).err, note));
+  CHECK_FALSE(has(with({"--fidelity", "events"}).err, note));
+  CHECK_FALSE(has(with({"--effect", "preemption"}).err, note));
+  // Of a comparison: each different note once, whatever the number of runs.
+  const ProgramRun table = run_program(small_with({"--fidelity", "closed-form"}));
+  CHECK(table.exit_code == 0);
+  CHECK(table.err.find(note) != std::string::npos);
+  CHECK(table.err.find(note) == table.err.rfind(note));
+  CHECK(run_program(small_with({"--fidelity", "closed-form", "--quiet"})).err.empty());
+}
+
+TEST_CASE("command line: run says what streaming and preemption did, where they ran") {
+  const auto with = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "dong-forest", "--policy", "static", "--frames", "20"});
+    return run_program(more).out;
+  };
+  const std::string both = with({"--effect", "streaming:memory=0", "--effect", "preemption:period=7ms"});
+  CHECK(has(both, "\nstreaming      "));
+  CHECK(has(both, "\npreemption     another client held the GPU for "));
+  CHECK_FALSE(has(with({}), "\nstreaming      "));
+  CHECK_FALSE(has(with({}), "\npreemption     "));
 }
 
 TEST_CASE("command line: the last policy's mistake stops a comparison before its first run") {

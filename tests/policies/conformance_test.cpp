@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/seeds.h"
 #include "tests/policies/make_policy.h"
 
 using namespace framesim;
@@ -220,7 +221,7 @@ TEST_CASE("every policy's default spelled out is its default") {
 TEST_CASE("every policy selects validly and as it promises, from 1 to 64 items") {
   for_each_variant([](Policy& policy, const std::string&) {
     for (std::size_t n = 1; n <= 64; n += n < 8 ? 1 : 7) {
-      for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
         CAPTURE(seed, n);
         select_at_all_budgets(policy, workload_for(policy, seed, n));
       }
@@ -232,7 +233,7 @@ TEST_CASE("every default policy selects validly on many random workloads") {
   for (const PolicyEntry& entry : policies()) {
     CAPTURE(entry.name);
     const auto policy = make_policy(entry.name);
-    for (std::uint64_t seed = 100; seed < 600; ++seed) {
+    for (std::uint64_t seed = 100; seed < 100 + seeds(500); ++seed) {
       CAPTURE(seed);
       select_at_all_budgets(*policy, workload_for(*policy, seed, 1 + seed % 64));
     }

@@ -166,3 +166,66 @@ TEST_CASE("funkhouser: incremental does little in an unchanged frame") {
   CHECK(first.level == second.level);
   CHECK(second.operations < first.operations);
 }
+
+// A = {(1,10),(2,16)}, B = {(1,10),(4,22)}, C = {(1,1),(1.5,2)}: from the cheapest, cost 3, the upgrades gain 6, 4 and 2
+// a second. Budget 5: A's is taken, B's costs 3 where 1 is left. There it ends; skipped, the 0.5 for C still fit. Budget
+// 7 pays B's instead of C's, so with misfits skipped C falls as the budget rises.
+TEST_CASE("funkhouser: stop-at-misfit ends with the first upgrade that does not fit") {
+  TestWorkload w;
+  w.add_item({{1, 10}, {2, 16}});
+  w.add_item({{1, 10}, {4, 22}});
+  w.add_item({{1, 1}, {1.5, 2}});
+  w.finish();
+  const auto stops = make_policy("funkhouser:rule=stop-at-misfit", w);
+  const auto skips = make_policy("funkhouser", w);
+  CHECK(w.select(*stops, 5).level == Levels{1, 0, 0});
+  CHECK(w.select(*skips, 5).level == Levels{1, 0, 1});
+  CHECK(w.select(*stops, 7).level == Levels{1, 1, 0});
+  CHECK(w.select(*skips, 7).level == Levels{1, 1, 0});
+}
+
+// Budget 2, nothing must be drawn: A = {(1,3),(5,10)}, B = {(1,1)}. After A0 (3 a second) A1 is next (7/4) and does not
+// fit.
+TEST_CASE("funkhouser: stop-at-misfit keeps what is too dear for the whole budget in its sequence") {
+  TestWorkload w;
+  w.add_item({{1, 3}, {5, 10}});
+  w.add_item({{1, 1}});
+  w.finish();
+  CHECK(w.select(*make_policy("funkhouser:rule=stop-at-misfit,none=true", w), 2).level == Levels{0, kNotDrawn});
+  CHECK(w.select(*make_policy("funkhouser:none=true", w), 2).level == Levels{0, 0});
+}
+
+// The reason for the rule: as the budget rises no level falls, where skipping misfits lowers some.
+TEST_CASE("funkhouser: stop-at-misfit lowers no level when the budget rises, on 300 random cases; skipping does") {
+  const auto falls = [](const TestWorkload& w, const char* spec) {
+    const auto policy = make_policy(spec, w);
+    Levels last(w.workload.size(), kNotDrawn);
+    int count = 0;
+    for (int step = 0; step <= 50; ++step) {
+      const Selection s = w.select(*policy, step / 50.0 * w.finest_cost_s());
+      for (std::size_t i = 0; i < last.size(); ++i) count += s.level[i] < last[i] ? 1 : 0;
+      last = s.level;
+    }
+    return count;
+  };
+  int falls_of_skipping = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    CAPTURE(seed);
+    const TestWorkload w = random_workload(seed, 1 + seed % 30);
+    REQUIRE(falls(w, "funkhouser:rule=stop-at-misfit,none=true") == 0);
+    falls_of_skipping += falls(w, "funkhouser:none=true");
+  }
+  CHECK(falls_of_skipping > 1000);
+}
+
+TEST_CASE("funkhouser: stop-at-misfit's bound holds on 1000 random cases") {
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    const TestWorkload w = arbitrary_workload(seed);
+    const double budget_s = TestRandom(seed + 2000000).uniform(0, 1) * w.finest_cost_s();
+    const Selection s = w.select(*make_policy("funkhouser:rule=stop-at-misfit,none=true", w), budget_s);
+    REQUIRE(s.planned_cost_s <= budget_s);
+    REQUIRE(s.bound.has_value());
+    REQUIRE(*s.bound >= best_levels(w.workload, budget_s, true) * (1 - 1e-12));
+  }
+}

@@ -187,3 +187,30 @@ TEST_CASE("robin-hood: asks for the planner that its parameter names") {
   CHECK(make_policy("robin-hood")->traits().planner == "inverse");
   CHECK(make_policy("robin-hood:planning=paper")->traits().planner == "paper");
 }
+
+// One item, so that its share is the budget; costs in any order, some equal. The reference looks from the finest level down
+// and takes the first that fits, else the cheapest it has seen, the coarsest of these, in part.
+TEST_CASE("robin-hood: the level that a search from the finest down finds, and as many operations") {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    CAPTURE(seed);
+    TestRandom random(seed);
+    std::vector<TestLevel> levels;
+    for (int l = random.whole(1, 9); l > 0; --l) levels.push_back({.cost_s = random.whole(1, 20) * 0.5, .benefit = 1});
+    TestWorkload w;
+    w.add_item(levels, {.depth_m = 1, .area_m2 = 1});
+    w.finish();
+    const double budget_s = random.uniform(0.1, 11);
+    std::size_t l = levels.size(), cheapest = levels.size() - 1;
+    std::int64_t operations = 3;  // valued, sorted, paid
+    while (l > 0) {
+      ++operations;
+      if (levels[--l].cost_s <= budget_s) break;
+      if (levels[l].cost_s <= levels[cheapest].cost_s) cheapest = l;
+    }
+    const bool fits = levels[l].cost_s <= budget_s;
+    const Selection s = w.select(*make_policy("robin-hood", w), budget_s);
+    CHECK(s.level == Levels{static_cast<std::int16_t>(fits ? l : cheapest)});
+    CHECK(s.resolution[0] == Approx(fits ? 1 : budget_s / levels[cheapest].cost_s).epsilon(1e-12));
+    CHECK(s.operations == operations);
+  }
+}

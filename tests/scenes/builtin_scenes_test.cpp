@@ -265,6 +265,25 @@ TEST_CASE("styria: 5,461 terrain nodes, 1,400,000 trees in groups of at most 64,
   CHECK(scene.camera.poses.size() >= 100);
 }
 
+// A square of the quadtree that holds two trees or more is a bundle; every tree is an item, of the type of one tree.
+TEST_CASE("styria with group=1 has every tree by itself, under the same terrain") {
+  const Scene scene = load_scene(parse_spec("styria:group=1,trees=3000,smallest=0"));
+  const Instances& rows = scene.instances;
+  std::size_t terrain = 0, trees = 0;
+  for (std::uint32_t row = 0; row < rows.size(); ++row) {
+    terrain += rows.kind[row] == ItemKind::levels;
+    const bool leaf = rows.subtree_end[row] == row + 1;
+    REQUIRE((rows.kind[row] != ItemKind::bundle || !leaf));
+    if (rows.kind[row] != ItemKind::curve) continue;
+    REQUIRE(leaf);
+    ++trees;
+    REQUIRE(scene.types[index(rows.type[row])].name == "grove-1");
+  }
+  CHECK(terrain == 5461);
+  CHECK(trees == 3000);
+  CHECK(scene.smallest_px == 0);
+}
+
 TEST_CASE("styria's camera flies above the ground") {
   const Scene scene = load_scene(parse_spec("styria"));
   const Instances& rows = scene.instances;

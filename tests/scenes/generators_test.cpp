@@ -213,6 +213,39 @@ TEST_CASE("groves hold exactly the trees asked for, in groups of at most the siz
   }
 }
 
+// Both orders are the quadtree's, so that the trees of a group follow each other among the single ones. A tree is 60 m high
+// and 15 m around; its own sphere tells where it stands, and a group's sphere is that around the boxes of its trees.
+TEST_CASE("trees one by one are the trees of the groups") {
+  const auto groves = [](const char* group) {
+    Scene scene = scene_with({});
+    run(scene, "groves", {{"count", "3000"}, {"grid", "128"}, {"group", group}, {"region", "6000"}, {"seed", "5"}});
+    return scene;
+  };
+  const Scene grouped = groves("16"), single = groves("1");
+  std::vector<std::uint32_t> trees;
+  for (std::uint32_t row = 0; row < single.instances.size(); ++row) {
+    if (single.instances.kind[row] == ItemKind::curve) trees.push_back(row);
+  }
+  REQUIRE(trees.size() == 3000);
+  std::size_t next = 0;
+  for (std::uint32_t row = 0; row < grouped.instances.size(); ++row) {
+    if (grouped.instances.kind[row] != ItemKind::curve) continue;
+    CAPTURE(row);
+    const double count = grouped.types[index(grouped.instances.type[row])].levels[0].draws;
+    glm::dvec3 low(1e300), high(-1e300);
+    for (double i = 0; i < count; ++i) {
+      REQUIRE(next < trees.size());
+      const glm::dvec3 centre = single.instances.centre[trees[next++]];
+      low = glm::min(low, centre - glm::dvec3(15, 30, 15));
+      high = glm::max(high, centre + glm::dvec3(15, 30, 15));
+    }
+    const glm::dvec3 middle = (low + high) * 0.5;
+    CHECK(glm::length(middle - grouped.instances.centre[row]) < 1e-9);
+    CHECK(static_cast<double>(grouped.instances.radius_m[row]) == Approx(glm::length(high - low) / 2).epsilon(1e-6));
+  }
+  CHECK(next == trees.size());
+}
+
 TEST_CASE("groves refuse more trees than cells and a grid that is no power of two") {
   CHECK(refusal(scene_with({}), "groves", {{"count", "257"}, {"grid", "16"}}) != "");
   CHECK(refusal(scene_with({}), "groves", {{"count", "10"}, {"grid", "24"}}) != "");

@@ -191,7 +191,8 @@ TEST_CASE("trunk levels by view: lines below three halves of the width") {
   }
   // An instance twice as large shows its cylinders twice as thick: 1, 2, 4 pixels.
   scene.instances.radius_m[0] = 4;
-  source->fill(0, {.curves = true}, w);
+  const auto larger = make_workload_source(scene);
+  larger->fill(0, {.curves = true}, w);
   CHECK(w.level_facts(0, 3).lines == 1);  // only 1 pixel is below 1.5
 }
 
@@ -224,7 +225,8 @@ TEST_CASE("leaves levels by view: points, then points and triangles, then triang
   }
   // At 15 m: 24 pixels a metre, 230.4 pixels a group. Width 4: p = 14 in (n, 2n]: 6 points and 4 triangles a group.
   scene.instances.centre[0] = {0, 0, -15};
-  source->fill(0, {}, w);
+  const auto nearer = make_workload_source(scene);
+  nearer->fill(0, {}, w);
   CHECK(w.level_facts(0, 3).points == 12);
   CHECK(w.level_facts(0, 3).polygons == 8);
 }
@@ -419,5 +421,43 @@ TEST_CASE("the same frame gives the same bits in any order of calls, and nothing
         CHECK(w.capacity_bytes() == bytes);
       }
     }
+  }
+}
+
+// Columns are overwritten and not cleared: what a larger frame, another request or another scene has left must not show.
+TEST_CASE("a workload that was filled before is filled as a new one is") {
+  const Scene scene = landscape();
+  Scene few = empty_scene();
+  few.types = {discrete_type({10, 100})};
+  for (int i = 0; i < 5; ++i) add_row(few, 0, {0, 0, -8.0 - i}, 2);
+  const auto source = make_workload_source(scene), other = make_workload_source(few);
+  Workload used;
+  for (std::int64_t k = 0; k < 80; ++k) {
+    const std::int64_t frame = k * 17 % 40;
+    const WorkloadRequest request{.curves = k % 2 == 0,
+                                  .hierarchy = k % 3 == 0,
+                                  .columns = k % 5 == 0 ? Columns::depth | Columns::area : Columns::all};
+    CAPTURE(k, frame);
+    if (k % 7 == 0) other->fill(0, {}, used);
+    const VisibilityCounts counts = source->fill(frame, request, used);
+    Workload fresh;
+    CHECK(source->fill(frame, request, fresh).visible == counts.visible);
+    REQUIRE(ids(used) == ids(fresh));
+    REQUIRE(used.type == fresh.type);
+    REQUIRE(used.kind == fresh.kind);
+    REQUIRE(used.projected_area_px == fresh.projected_area_px);
+    REQUIRE(used.depth_m == fresh.depth_m);
+    REQUIRE(used.distance_m == fresh.distance_m);
+    REQUIRE(used.view_angle_rad == fresh.view_angle_rad);
+    REQUIRE(used.area_m2 == fresh.area_m2);
+    REQUIRE(used.diagonal_m == fresh.diagonal_m);
+    REQUIRE(used.facts_begin == fresh.facts_begin);
+    REQUIRE(used.level_begin == fresh.level_begin);
+    REQUIRE(used.subtree_end == fresh.subtree_end);
+    REQUIRE(used.facts.size() == fresh.facts.size());
+    for (const auto* column : {&used.cost_s, &used.benefit}) REQUIRE(column->size() == fresh.level_begin.back());
+    for (const auto* column : {&used.curve_setup_s, &used.curve_knee}) REQUIRE(column->size() == fresh.size());
+    CHECK(counts.visible == std::count_if(fresh.kind.begin(), fresh.kind.end(),
+                                          [](ItemKind kind) { return kind != ItemKind::bundle; }));
   }
 }

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <set>
 
+#include "scenes/visibility/bounds.h"
 #include "sim/random_stream.h"
 #include "tests/catch.h"
 
@@ -193,4 +195,27 @@ TEST_CASE("the scene's own tree finds what brute force finds, inner nodes includ
     }
   }
   CHECK(tests < brute);
+}
+
+// 300,000 rows are 4,688 words and 74 words of words. Marked are a few, none, many, twice the same, and the last row.
+TEST_CASE("marked rows come back ascending, once each, and leave an empty set") {
+  constexpr std::uint32_t kRows = 300'000;
+  constexpr std::uint64_t kSeed = 11;
+  const RandomStream random(kSeed, "row-marks");
+  RowMarks marks;
+  marks.resize(kRows);
+  std::vector<std::uint32_t> rows = {1, 2, 3};
+  for (std::uint32_t round = 0; round < 12; ++round) {
+    CAPTURE(kSeed, round);
+    std::set<std::uint32_t> expected;
+    const std::uint32_t count = round % 4 == 3 ? 0 : 1u << round;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto row = static_cast<std::uint32_t>(random.uniform(round, i, 0) * kRows);
+      for (std::uint32_t twice = 0; twice < 1 + i % 2; ++twice) marks.mark(row);
+      expected.insert(row);
+    }
+    if (round % 2 == 0) marks.mark(kRows - 1), expected.insert(kRows - 1);
+    marks.drain(rows);
+    REQUIRE(rows == std::vector<std::uint32_t>(expected.begin(), expected.end()));
+  }
 }

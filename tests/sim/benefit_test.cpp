@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/catch.h"
+#include "tests/sim/random_workload.h"
 
 using namespace framesim;
 
@@ -45,4 +46,19 @@ TEST_CASE("a full group of trees scores S^2/16 times the root of its splats per 
 TEST_CASE("a benefit stated outright wins over every model") {
   const ObjectType chair{.name = "chair", .importance = 0.1};
   CHECK(benefit({.polygons = 5, .stated_benefit = 14}, chair, 1000) == 14);
+}
+
+// Items fewer than facts, and more; the scorer has seen other workloads before.
+TEST_CASE("the scorer's benefits are score()'s, bit for bit") {
+  BenefitScorer scorer;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    testing::RandomWorkload random(seed, seed * seed % 401);
+    Workload& w = random.workload;
+    score(w);
+    const std::vector<double> plain = w.benefit;
+    w.benefit.assign(plain.size(), -1);
+    scorer.score(w);
+    REQUIRE(w.benefit == plain);
+  }
 }

@@ -87,6 +87,37 @@ TEST_CASE("closed forms wait for the vertical blank too") {
   CHECK(second.frame_time.count() == 10);
 }
 
+// One frame in flight: 6 of the CPU's 9 come before the first command, s = 2/3, T = 9 + 6. With more, s = 0. The same frame
+// through the stages: commands at 6+2 = 8 and 9, primitive 8..11..15, pixels 11..13, 15..18, shown at 20: the formula
+// overlaps too much.
+TEST_CASE("a staged machine in closed form: s is the CPU's share before the first command, or 0") {
+  const PipelineFrame frame = equal_times();
+  for (const int in_flight : {1, 2, 4}) {
+    CAPTURE(in_flight);
+    MachineProfile machine;
+    machine.overlap.frames_in_flight = in_flight;
+    const auto engine = make_engine(machine, {.kind = EngineKind::closed_form});
+    CHECK(engine->kind() == EngineKind::closed_form);
+    CHECK(engine->run(frame.work()).frame_time.count() == (in_flight == 1 ? 15 : 9));
+    CHECK(engine->run(frame.work()).frame_time.count() == (in_flight == 1 ? 15 : 9));
+  }
+  CHECK(make_engine({}, {.kind = EngineKind::recurrence})->run(frame.work()).shown.count() == 20);
+}
+
+// The share is each frame's own: with no time on the CPU it does not matter; with all of it before the first command the
+// frame is serial.
+TEST_CASE("the closed form of a staged machine takes each frame's own share") {
+  MachineProfile machine;
+  ClosedForm engine(machine);
+  PipelineFrame frame{};
+  add_command(frame.commands, 0, 5, 3);
+  CHECK(engine.run(frame.work()).frame_time.count() == 5);
+  frame.cpu_before = 4;
+  CHECK(engine.run(frame.work()).frame_time.count() == 9);
+  machine.overlap.frames_in_flight = 0;
+  CHECK_THROWS_AS(ClosedForm(machine), InternalError);
+}
+
 TEST_CASE("a serial share outside 0..1 is refused") {
   CHECK_THROWS_AS(ClosedForm(-0.1), InternalError);
   CHECK_THROWS_AS(ClosedForm(1.1), InternalError);

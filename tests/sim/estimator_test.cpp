@@ -2,6 +2,7 @@
 
 #include "tests/catch.h"
 #include "tests/sim/estimators/fixtures.h"
+#include "tests/sim/random_workload.h"
 
 using namespace framesim;
 using namespace framesim::testing;
@@ -168,4 +169,35 @@ TEST_CASE("an empty workload is priced without being touched") {
   const auto oracle = make_estimator("oracle");
   oracle->price(w);
   CHECK(w.cost_s.empty());
+}
+
+// The default price() asks cost_s for every level; two-stage has one of its own. Items fewer than facts, and more.
+TEST_CASE("every estimator: price gives what cost_s says of each level, bit for bit") {
+  const Machine machine(test_profile(0.3));
+  for (const char* name : {"oracle", "oracle:combine=sum", "two-stage", "two-stage:combine=sum", "table", "linear-feedback"}) {
+    const auto estimator = make_estimator(name);
+    const RandomStream random(4, "estimators");
+    estimator->prepare(machine, kLogic, scene_of(random, RandomWorkload::kScreenPx));
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      CAPTURE(name, seed);
+      RandomWorkload made(seed, seed * seed % 401);
+      Workload& w = made.workload;
+      estimator->price(w);
+      bool same = w.cost_s.size() == w.level_begin.back();
+      for (std::size_t i = 0; i < w.size() && same; ++i) {
+        if (w.kind[i] == ItemKind::curve) {
+          Facts whole = w.level_facts(i, 0);
+          whole.draws = draws_issued(whole, 1, w.type_of(i).draws_scale_below_knee);
+          same = w.cost_s[w.finest(i)] == estimator->cost_s(whole, w.projected_area_px[i]) &&
+                 w.curve_setup_s[i] == std::min(estimator->setup_s(whole), w.cost_s[w.finest(i)]);
+          continue;
+        }
+        for (std::size_t l = 0; l < w.levels(i); ++l) {
+          const double cost = estimator->cost_s(w.level_facts(i, l), w.projected_area_px[i]);
+          same = same && w.cost_s[w.level_begin[i] + l] == std::max(cost, kSmallestCostS);
+        }
+      }
+      REQUIRE(same);
+    }
+  }
 }

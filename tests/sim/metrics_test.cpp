@@ -1,5 +1,7 @@
 #include "sim/metrics.h"
 
+#include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -87,6 +89,36 @@ TEST_CASE("the target in whole picoseconds is not exceeded by a frame of that le
   CHECK(summarise(records, 1.0 / 60).over_target == 0);
   ++records[0].frame_time_ps;
   CHECK(summarise(records, 1.0 / 60).over_target == 1);
+}
+
+TEST_CASE("gaps to the bound, over the frames that keep their budget", "[metrics]") {
+  std::vector<FrameRecord> records = example();
+  const double bound[] = {1, 10, 4, 9, 8}, coarsest[] = {0, 0, 4, 1, 2};
+  const double budget_s[] = {9, 0.012, 0.005, 0.015, 0.030};  // frame 4 plans 0.040: overdrawn
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i].bound = bound[i];
+    records[i].coarsest_benefit = coarsest[i];
+    records[i].budget_s = budget_s[i];
+  }
+  const Summary s = summarise(records, 0.025);
+  // Frame 1: (10-5)/(10-0) = 1/2. Frame 2 has no choice: the bound is all-coarsest. Frame 3: (9-9)/(9-1) = 0.
+  CHECK(s.ngap == Approx(0.25));
+  // Frames 1, 2 and 3: 5/10, 0/4, 9/9.
+  CHECK(s.bound_share == Approx(0.5));
+  CHECK(s.over_budget == Approx(0.25));
+}
+
+TEST_CASE("a cost above the budget by rounding keeps it; without bounds there are no gaps", "[metrics]") {
+  std::vector<FrameRecord> records = example();
+  for (FrameRecord& r : records) {
+    r.budget_s = r.planned_cost_s / (1 + 0.5e-9);
+    r.bound = std::numeric_limits<double>::quiet_NaN();
+  }
+  const Summary s = summarise(records, 0.025);
+  CHECK(s.over_budget == 0);
+  CHECK(std::isnan(s.ngap));
+  CHECK(std::isnan(s.bound_share));
+  CHECK(std::isnan(s.err_over_least));
 }
 
 TEST_CASE("every summary column reads its own member", "[metrics]") {

@@ -1,10 +1,13 @@
 // Random staged pipelines from a seed: machine shape and the work of all frames.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "sim/engine.h"
+#include "sim/random_stream.h"
 
 namespace framesim::test {
 
@@ -46,6 +49,7 @@ struct PipelineFrame {
 struct Pipeline {
   MachineProfile machine;
   std::vector<PipelineFrame> frames;
+  bool jittered = false;
 };
 
 inline void add_command(CommandColumns& commands, std::int64_t submit, std::int64_t primitive, std::int64_t pixel) {
@@ -54,9 +58,33 @@ inline void add_command(CommandColumns& commands, std::int64_t submit, std::int6
   commands.pixel_ps.push_back(pixel);
 }
 
+// A frame of commands {submit, primitive, pixel}, without vsync.
+inline PipelineFrame make_frame(std::int64_t cpu_before, std::int64_t swap,
+                                const std::vector<std::array<std::int64_t, 3>>& commands) {
+  PipelineFrame frame{.cpu_before = cpu_before, .swap = swap, .vsync_period = 0, .commands = {}};
+  for (const auto& [submit, primitive, pixel] : commands) add_command(frame.commands, submit, primitive, pixel);
+  return frame;
+}
+
+// Each stage time of each command times e^(0.3 n), n standard normal: what the effect jitter does.
+inline void jitter(std::uint64_t seed, Pipeline& pipeline) {
+  const RandomStream stream(seed, "jitter");
+  pipeline.jittered = true;
+  for (std::size_t k = 0; k < pipeline.frames.size(); ++k) {
+    CommandColumns& commands = pipeline.frames[k].commands;
+    std::uint32_t lane = 0;
+    for (auto* column : {&commands.submit_ps, &commands.primitive_ps, &commands.pixel_ps}) {
+      for (std::uint32_t i = 0; i < column->size(); ++i) {
+        (*column)[i] = std::llround(static_cast<double>((*column)[i]) * std::exp(0.3 * stream.normal(k, i, lane)));
+      }
+      ++lane;
+    }
+  }
+}
+
 // FIFOs of 1..64 (half of them 1..3), 1..4 frames in flight, 1..12 frames of 1..40 commands. Durations are up to 3, 20, 10^6
 // or 10^12 ps: small ones make ties frequent. A third of the pipelines has vsync, with a period from far below to far
-// above the frame time, so that blanks are missed; some change period and swap from frame to frame.
+// above the frame time, so that blanks are missed; some change period and swap from frame to frame. A third is jittered.
 inline Pipeline random_pipeline(std::uint64_t seed) {
   SplitMix random(seed);
   Pipeline pipeline;
@@ -87,6 +115,7 @@ inline Pipeline random_pipeline(std::uint64_t seed) {
       add_command(frame.commands, of_submit, of_primitive, of_pixel);
     }
   }
+  if (random.chance(33)) jitter(seed, pipeline);
   return pipeline;
 }
 

@@ -182,5 +182,9 @@ TEST_CASE("the record says which engine computed its times") {
   CHECK(step_with(EngineKind::automatic, "serial").fidelity == 0);
   // All else agrees, bit for bit.
   recurrence.fidelity = events.fidelity;
+  CHECK(recurrence.engine_steps == 15);  // five equations each for the clear and two draws
+  // Each of them submitted, drawn and filled; the frame started and shown.
+  CHECK(events.engine_steps == 11);
+  recurrence.engine_steps = events.engine_steps;
   CHECK(to_csv(recurrence) == to_csv(events));
 }

@@ -80,3 +80,23 @@ TEST_CASE("a check builds its detail only when it fails", "[check]") {
   CHECK_THROWS_AS([&] { FRAMESIM_CHECK(built > 5, detail()); }(), InternalError);
   CHECK(built == 1);
 }
+
+// The definition in doubles: rounded down, and one more unless what is left is rounding. Over all magnitudes, and within a
+// few ulps of whole numbers on both sides.
+TEST_CASE("ceil_picoseconds agrees with its definition by floor()") {
+  const auto by_floor = [](double seconds) {
+    const double picoseconds = seconds * 1e12, below = std::floor(picoseconds);
+    return static_cast<std::int64_t>(picoseconds - below <= picoseconds * 0x1p-51 ? below : below + 1);
+  };
+  constexpr std::uint64_t kSeed = 7;
+  const RandomStream stream(kSeed, "ceil");
+  for (std::uint32_t i = 0; i < 200'000; ++i) {
+    double seconds = std::exp2(stream.uniform(-60, 16.3, 0, i, 0));
+    if (i % 2 == 0) {
+      seconds = std::ceil(seconds * 1e12) / 1e12;
+      for (std::uint32_t k = 0; k < i / 2 % 5; ++k) seconds = std::nextafter(seconds, i % 4 == 0 ? 0.0 : 1e9);
+    }
+    CAPTURE(kSeed, i, seconds);
+    REQUIRE(ceil_picoseconds(seconds).count() == by_floor(seconds));
+  }
+}

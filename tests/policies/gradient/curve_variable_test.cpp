@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/catch.h"
+#include "tests/seeds.h"
 #include "tests/policies/workloads.h"
 
 using namespace framesim;
@@ -69,7 +70,7 @@ TEST_CASE("curve variable: what is affordable costs what it should") {
 
 // The definition: no point of the curve lies above the hull that goes smoothly to cap, straight to jump_to and on.
 TEST_CASE("curve variable: the jump is the upper concave hull, on 2000 random curves") {
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(2000); ++seed) {
     CAPTURE(seed);
     TestRandom random(seed);
     const double setup_s = std::exp(random.uniform(-8, 3)), rest_s = std::exp(random.uniform(-8, 3));

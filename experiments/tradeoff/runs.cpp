@@ -1,0 +1,32 @@
+#include "experiments/tradeoff/runs.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace framesim {
+namespace {
+constexpr int kRunsMeasured = 5;  // the first is the warm-up
+}
+
+RunSpec default_run(std::string_view scene, std::string_view policy) {
+  RunSpec spec;
+  spec.scene = {std::string(scene), {}, {"tradeoff"}};
+  spec.policy = {std::string(policy), {}, {"tradeoff"}};
+  spec.profile = true;
+  return spec;
+}
+
+TimedRun run_timed(const RunSpec& spec, const Scene& scene, std::initializer_list<StepPart> parts) {
+  TimedRun timed{.result = {}, .time_s = std::numeric_limits<double>::infinity()};
+  for (int k = 0; k < kRunsMeasured; ++k) {
+    timed.result = run(spec, scene);
+    if (k == 0) continue;
+    std::int64_t ns = 0;
+    for (const StepPart part : parts) ns += timed.result.profile.part_ns[static_cast<std::size_t>(part)];
+    timed.time_s =
+        std::min(timed.time_s, static_cast<double>(ns) * 1e-9 / static_cast<double>(timed.result.profile.frames));
+  }
+  return timed;
+}
+
+}  // namespace framesim

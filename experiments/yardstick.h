@@ -1,0 +1,33 @@
+// How much of a run's error is whose fault: the run beside others in which ideal parts stand in for its own.
+//
+//   least       exact selection, oracle estimator, exact inverse of the overlap, decisions free of charge: the AvgErr that scene, target, machine and
+//               effects leave to anyone (jitter, granularity, and what the coarsest levels cost, remain)
+//   estimator   the same with the run's own estimator: what not knowing the machine adds
+//   planner     the same with the run's own planner: what a budget that does not invert the overlap adds
+//   selection   the same with the run's own policy: what choosing otherwise adds
+//
+// A policy may come below `least`: the exact selection spends no time that buys no benefit, even where the target has room.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/batch.h"
+
+namespace framesim {
+
+// Each with what comes before it: the bound on every frame's benefit, the least error of scene and target, its parts.
+enum class Yardstick { none, bound, least, parts };
+inline constexpr std::array<std::string_view, 4> kYardstickNames = {"none", "bound", "least", "parts"};
+
+// The results of `jobs`, in order, with what the yardstick adds to their summaries: Summary::ngap and its neighbours from the
+// bound, err_over_least, and the added errors. Ideal runs are made once for all rows that share them.
+std::vector<RunResult> run_with_yardstick(std::vector<Job> jobs, Yardstick yardstick, int threads, bool quiet);
+
+// The parts of each row's error as a table for people: one block a scene and target.
+std::string format_error_parts(std::span<const RunResult> results);
+
+}  // namespace framesim

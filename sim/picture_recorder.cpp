@@ -1,0 +1,126 @@
+#include "sim/picture_recorder.h"
+
+#include <algorithm>
+
+#include "sim/statistics.h"
+
+namespace framesim {
+namespace {
+
+// The rung of the stand-in ladder 1, 1/2, 1/4 ... that a resolution reaches, so that level switches of continuous and
+// discrete levels count the same thing.
+std::int16_t rung(double resolution, int rungs) {
+  int level = rungs - 1;
+  for (double x = resolution; x < 1 && level > 0; x *= 2) --level;
+  return static_cast<std::int16_t>(level);
+}
+
+std::int16_t level_code(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (selection.level[item] == kNotDrawn || workload.kind[item] != ItemKind::curve) return selection.level[item];
+  return rung(selection.resolution[item], workload.type_of(item).stand_in_levels);
+}
+
+// Where a drawn item stands between its coarsest (0) and finest (1) choice.
+double fineness(const Workload& workload, const Selection& selection, std::size_t item) {
+  if (workload.kind[item] == ItemKind::curve) return selection.resolution[item];
+  const std::size_t levels = workload.levels(item);
+  const double part = selection.resolution[item];
+  if (levels == 1) return part;
+  return part * selection.level[item] / static_cast<double>(levels - 1);
+}
+
+// Drawn items by fineness. Each limit is counted apart, without a branch: which bin an item falls into cannot be guessed.
+struct Mix {
+  std::int64_t drawn = 0, a_third = 0, two_thirds = 0, whole = 0;
+
+  void add(double fineness) {
+    ++drawn;
+    a_third += fineness >= 1.0 / 3;
+    two_thirds += fineness >= 2.0 / 3;
+    whole += fineness >= 1;
+  }
+  void write(FrameRecord& record) const {
+    record.drawn += drawn;
+    record.mix_finest += whole;
+    record.mix_fine += two_thirds - whole;
+    record.mix_middle += a_third - two_thirds;
+    record.mix_coarse += drawn - a_third;
+  }
+};
+
+}  // namespace
+
+void PictureRecorder::record(const Workload& workload, const Selection& selection, FrameRecord& record) {
+  record.benefit = selection.planned_benefit;
+  if (workload.hierarchical()) {
+    record_tree(workload, selection, record);
+  } else {
+    record_flat(workload, selection, record);
+  }
+  record_switches(workload, selection, record);
+}
+
+void PictureRecorder::record_flat(const Workload& workload, const Selection& selection, FrameRecord& record) const {
+  CompensatedSum finest;
+  Mix mix;
+  for (std::size_t i = 0; i < workload.size(); ++i) {
+    const bool leaf = workload.kind[i] != ItemKind::bundle;
+    if (leaf) finest.add(workload.benefit[workload.finest(i)]);
+    if (selection.level[i] != kNotDrawn) {
+      mix.add(fineness(workload, selection, i));
+    } else if (leaf) {
+      ++record.mix_none;
+    }
+  }
+  record.finest_benefit = finest.value();
+  mix.write(record);
+}
+
+// A drawn node stands for its subtree, and is the coarser the higher it is.
+void PictureRecorder::record_tree(const Workload& workload, const Selection& selection, FrameRecord& record) {
+  const std::size_t n = workload.size();
+  height_.assign(n, 0);
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t c = i + 1; c < workload.subtree_end[i]; c = workload.subtree_end[c]) {
+      height_[i] = std::max<std::uint16_t>(height_[i], static_cast<std::uint16_t>(height_[c] + 1));
+    }
+  }
+  CompensatedSum finest;
+  std::uint16_t tallest = 1;
+  const auto is_leaf = [&](std::size_t i) { return height_[i] == 0 && workload.kind[i] != ItemKind::bundle; };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_leaf(i)) finest.add(workload.benefit[workload.finest(i)]);
+    tallest = std::max(tallest, height_[i]);
+  }
+  record.finest_benefit = finest.value();
+  Mix mix;
+  for (std::size_t i = 0; i < n;) {
+    if (selection.level[i] == kNotDrawn) {
+      if (is_leaf(i)) ++record.mix_none;
+      ++i;
+      continue;
+    }
+    double d = fineness(workload, selection, i);
+    if (height_[i] > 0) d *= 1 - static_cast<double>(height_[i]) / (tallest + 1);
+    mix.add(d);
+    i = workload.subtree_end[i];
+  }
+  mix.write(record);
+}
+
+// Items that are visible in this frame and in the last one, with another level: both lists are in order of id.
+void PictureRecorder::record_switches(const Workload& workload, const Selection& selection, FrameRecord& record) {
+  const std::size_t n = workload.size(), last = last_id_.size();
+  level_.resize(n);
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const InstanceId id = workload.id[i];
+    level_[i] = level_code(workload, selection, i);
+    while (j < last && last_id_[j] < id) ++j;
+    record.switches += j < last && last_id_[j] == id && last_level_[j] != level_[i];
+  }
+  last_id_.assign(workload.id.begin(), workload.id.end());
+  last_level_.assign(level_.begin(), level_.end());
+}
+
+}  // namespace framesim

@@ -1,0 +1,140 @@
+// certified on the built-in scenes: the wanted share of misses, level switches, and the smallest gap.
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "policies/registry.h"
+#include "scenes/registry.h"
+#include "scenes/scene_workload.h"
+#include "sim/bound.h"
+#include "sim/simulation.h"
+#include "tests/catch.h"
+
+using namespace framesim;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+constexpr bool kSlow = true;
+#else
+constexpr bool kSlow = false;
+#endif
+
+constexpr std::int64_t kCutEvery = 500;  // frames
+
+// The camera path over and over; with cuts the camera jumps half a path ahead every kCutEvery frames.
+class Endless final : public WorkloadSource {
+ public:
+  Endless(const Scene& scene, bool cuts) : source_(make_workload_source(scene)), facts_(source_->scene()), cuts_(cuts) {
+    period_ = facts_.frames;
+    facts_.frames = std::numeric_limits<std::int64_t>::max();
+  }
+  const SceneFacts& scene() const override { return facts_; }
+  VisibilityCounts fill(std::int64_t frame, const WorkloadRequest& request, Workload& workload) override {
+    const std::int64_t jumped = cuts_ ? frame / kCutEvery * (period_ / 2 + 17) : 0;
+    return source_->fill((frame + jumped) % period_, request, workload);
+  }
+  std::int64_t period() const { return period_; }
+
+ private:
+  std::unique_ptr<WorkloadSource> source_;
+  SceneFacts facts_;
+  std::int64_t period_ = 0;
+  bool cuts_;
+};
+
+template <class Entry, class... Args>
+auto make(std::string_view kind, std::span<const Entry> entries, const std::string& text, Args... args) {
+  const Spec spec = parse_spec(text);
+  return find_entry(kind, entries, spec).make(spec.settings, args...);
+}
+
+struct Result {
+  double misses = 0;                                 // share of frames
+  double switches = 0, benefit_share = 0, ngap = 0;  // means over frames
+};
+
+// `frames` 0: the path once.
+Result run(const std::string& scene_text, const std::string& policy_text, double target_s, std::int64_t frames,
+           bool disturbed) {
+  const Scene scene = load_scene(parse_spec(scene_text));
+  Endless source(scene, disturbed);
+  const auto policy = make("policy", policies(), policy_text);
+  const auto planner = make("planner", planners(), "inverse");
+  const auto estimator = make("estimator", estimators(), "two-stage");
+  const auto jitter = make("effect", effects(), "jitter", std::uint64_t{1});
+  std::vector<Effect*> active;
+  if (disturbed) active.push_back(jitter.get());
+  const Machine machine(scene.machine);
+  Simulation simulation({source, *policy, *planner, *estimator, machine, scene.logic, active}, {.target_s = target_s});
+  BenefitBound yardstick;
+  Result result;
+  const std::int64_t count = frames > 0 ? frames : source.period();
+  for (std::int64_t k = 0; k < count; ++k) {
+    const FrameRecord& record = simulation.step();
+    result.misses += to_seconds(Picoseconds(record.frame_time_ps)) > target_s ? 1 : 0;
+    result.switches += static_cast<double>(record.switches);
+    if (disturbed) continue;
+    const FrameBound bound = yardstick.compute(simulation.workload(), record.budget_s);
+    const double room = bound.benefit - bound.coarsest_benefit, value = simulation.selection().planned_benefit;
+    result.benefit_share += bound.benefit > 0 ? value / bound.benefit : 1;
+    result.ngap += room > 1e-9 * bound.benefit ? (bound.benefit - value) / room : 0;
+  }
+  for (double* mean : {&result.misses, &result.switches, &result.benefit_share, &result.ngap}) {
+    *mean /= static_cast<double>(count);
+  }
+  return result;
+}
+
+// Targets at which most frames are neither all finest nor out of reach. The museum is all finest at its own targets.
+struct Case {
+  const char* scene;
+  double target_s;
+};
+const Case kCases[] = {{"street", 12e-3},          {"auditorium", 100e-3},        {"graphicon-forest:trees=100", 25e-3},
+                       {"dong-forest", 66.667e-3}, {"styria:trees=10000", 60e-3}, {"museum", 3e-3}};
+
+}  // namespace
+
+TEST_CASE("the wanted share of frames misses the target, with jitter and camera cuts, on every scene") {
+  // Over 10,000 frames 1 % means 0.5 to 1.5 %, 5 % means 4 to 6 %. A slow build runs one scene for 2,000 frames, in which
+  // the telescoped sum allows twice that.
+  const std::int64_t frames = kSlow ? 2000 : 10'000;
+  for (const Case& c : kCases) {
+    if (kSlow && std::string(c.scene) != "street") continue;
+    for (const double percent : {1.0, 5.0}) {
+      CAPTURE(c.scene, percent, frames);
+      const std::string policy = percent == 1 ? "certified:miss-rate=1%" : "certified:miss-rate=5%";
+      const double misses = 100 * run(c.scene, policy, c.target_s, frames, true).misses;
+      const double tolerance = (percent == 1 ? 0.5 : 1) * (kSlow ? 2 : 1);
+      CHECK(misses >= percent - tolerance);
+      CHECK(misses <= percent + tolerance);
+    }
+  }
+}
+
+TEST_CASE("with hysteresis levels switch at most half as often as funkhouser's at the same benefit") {
+  const std::int64_t frames = kSlow ? 40 : 0;
+  for (const Case& c : {kCases[0], kCases[1], kCases[5]}) {
+    CAPTURE(c.scene);
+    const Result greedy = run(c.scene, "funkhouser", c.target_s, frames, false);
+    const Result ours = run(c.scene, "certified:hysteresis=0.001", c.target_s, frames, false);
+    CAPTURE(greedy.switches, ours.switches, greedy.benefit_share, ours.benefit_share);
+    CHECK(ours.switches <= 0.5 * greedy.switches);
+    CHECK(ours.benefit_share == Approx(greedy.benefit_share).margin(0.005));
+  }
+}
+
+TEST_CASE("no policy that keeps its budget comes nearer to the bound") {
+  // Not street and dong-forest: there several policies find the same selection, and the budget, from which each one's
+  // own decision time is taken, decides whose bound is lower.
+  const std::int64_t frames = kSlow ? 3 : 40;
+  for (const Case& c : {kCases[1], Case{"graphicon-forest", 50e-3}, Case{"styria", 100e-3}, kCases[5]}) {
+    const double ours = run(c.scene, "certified", c.target_s, frames, false).ngap;
+    for (const char* other : {"funkhouser", "mixed-gradient", "lagrange", "active-set", "hierarchical"}) {
+      CAPTURE(c.scene, other);
+      CHECK(ours <= run(c.scene, other, c.target_s, frames, false).ngap + 1e-6);
+    }
+  }
+}
