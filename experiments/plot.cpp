@@ -66,8 +66,12 @@ std::string curves(const Block& block) {
     std::size_t same_kind = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {
       if (holds(*block[i]) != holding) continue;
-      script += fmt::format("$frames{} using 1:2 with lines lw {} lc rgb '{}' title {}, \\\n", i, holding ? 2 : 1.2,
-                            color_of(holding, same_kind++), gnuplot_string(legend(*block[i])));
+      // Six colours; the next six curves are dashed, then dotted.
+      const std::size_t round = same_kind / 6;
+      script += fmt::format("$frames{} using 1:2 with lines lw {} dt {} lc rgb '{}' title {}, \\\n", i, holding ? 2 : 1.2,
+                            round == 0 ? 1 : round == 1 ? 4 : 3, color_of(holding, same_kind),
+                            gnuplot_string(legend(*block[i])));
+      ++same_kind;
     }
   }
   return script;
