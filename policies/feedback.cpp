@@ -48,14 +48,7 @@ class FeedbackPolicy : public Policy {
   void prepare(const PolicyScene&) override { set_threshold(parameters_.start); }
 
   void select(const FrameContext& context, Selection& selection) override {
-    const Workload& workload = context.workload;
-    for (std::size_t i = 0; i < workload.size(); ++i) {
-      if (workload.levels(i) == 0) continue;
-      const std::size_t level = level_by_size(workload, i, threshold_px_);
-      draw(selection, i, level);
-      selection.operations += static_cast<std::int64_t>(workload.levels(i) - level);
-    }
-    finish_plan(workload, selection);
+    draw_by_size(context.workload, threshold_px_, selection);
   }
 
   void observe(const FrameOutcome& outcome) override {

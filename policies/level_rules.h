@@ -52,4 +52,15 @@ inline void finish_plan(const Workload& workload, Selection& selection) {
   selection.planned_benefit = sums.benefit;
 }
 
+// Draws every item that has levels at level_by_size(); one operation a level looked at.
+inline void draw_by_size(const Workload& workload, double pixels, Selection& selection) {
+  for (std::size_t i = 0; i < workload.size(); ++i) {
+    if (workload.levels(i) == 0) continue;
+    const std::size_t level = level_by_size(workload, i, pixels);
+    draw(selection, i, level);
+    selection.operations += static_cast<std::int64_t>(workload.levels(i) - level);
+  }
+  finish_plan(workload, selection);
+}
+
 }  // namespace framesim
