@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/paths.h"
 
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kRoot = FRAMESIM_SOURCE_DIR;
+const fs::path kRoot = framesim::kSourceFolder;
 
 struct Include {
   std::string file;    // from the root: "sim/machine.cpp"
@@ -105,6 +106,8 @@ TEST_CASE("third-party libraries show in their folders only") {
   CHECK(leaks("boost/graph", {"sim/stage_graph.cpp", "scenes/"}) == kNone);
   CHECK(leaks("boost/multiprecision", {"tests/"}) == kNone);
   CHECK(leaks("boost/", {"sim/stage_graph.cpp", "scenes/", "tests/"}) == kNone);
+  CHECK(leaks("nlohmann/", {"scenes/importers/", "experiments/", "tests/"}) == kNone);
+  CHECK(leaks("sqlite3", {"experiments/store/", "tests/experiments/"}) == kNone);
   CHECK(leaks("coin/", {"tests/policies/"}) == kNone);
   CHECK(leaks("CLI/", {"experiments/"}) == kNone);
   CHECK(leaks("catch2/", {"tests/"}) == kNone);

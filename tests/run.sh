@@ -49,8 +49,29 @@ small() { table "$1" "$2" --scenes street,graphicon-forest,auditorium --frames 4
 
 same() { cmp "$1" "$2"; }
 
+# all_tests FOLDER: every test case of FOLDER/framesim_tests, dealt to one process for each processor. Each process
+# prints only when all of them are through, so that a failure reads in one piece.
+all_tests() {
+  shards=$(processors)
+  rm -f "$1"/shard-*
+  "$1/framesim_tests" --list-test-names-only >"$1/shard-names" || [ -s "$1/shard-names" ] || return 1
+  # In a list of names a comma and a bracket mean something else.
+  sed 's/[][,\\]/\\&/g' "$1/shard-names" |
+    awk -v folder="$1" -v shards="$shards" 'NF { print > (folder "/shard-" NR % shards ".names") }'
+  for names in "$1"/shard-*.names; do
+    { "$1/framesim_tests" --input-file "$names" >"$names.log" 2>&1; echo $? >"$names.code"; } &
+  done
+  wait
+  failures=0
+  for names in "$1"/shard-*.names; do
+    sed '/^Filters: /d' "$names.log"
+    if [ "$(cat "$names.code")" -ne 0 ] || grep -q 'Invalid Filter' "$names.log"; then failures=1; fi
+  done
+  return $failures
+}
+
 sanitized_tests() {
-  ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 build-sanitize/framesim_tests
+  ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 all_tests build-sanitize
 }
 
 packages=$BUILD_PACKAGES
@@ -61,7 +82,7 @@ stage "packages" install_packages $packages
 
 stage "build with g++, Release" build_framesim build all -DCMAKE_BUILD_TYPE=Release
 [ "$failed" -eq 0 ] || finish
-stage "tests" build/framesim_tests
+stage "tests" all_tests build
 stage "golden tables" build/framesim check tests/golden --quiet
 [ "$quick" = no ] || finish
 

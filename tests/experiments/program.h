@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/paths.h"
 
 extern char** environ;
 
@@ -37,7 +38,7 @@ inline std::string content_of(std::FILE* file) {
 
 // Without a shell: each argument arrives as it is. Standard input is empty.
 inline ProgramRun run_program(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), FRAMESIM_BINARY);
+  arguments.insert(arguments.begin(), kProgramPath);
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -51,7 +52,7 @@ inline ProgramRun run_program(std::vector<std::string> arguments) {
   posix_spawn_file_actions_adddup2(&actions, fileno(out), 1);
   posix_spawn_file_actions_adddup2(&actions, fileno(err), 2);
   pid_t child = 0;
-  const int error = posix_spawn(&child, FRAMESIM_BINARY, &actions, nullptr, argv.data(), environ);
+  const int error = posix_spawn(&child, kProgramPath, &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   REQUIRE(error == 0);
   int status = 0;
