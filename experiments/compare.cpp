@@ -9,6 +9,7 @@
 #include "experiments/gnuplot.h"
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
+#include "experiments/plugin.h"
 #include "experiments/table.h"
 #include "experiments/terminal.h"
 #include "experiments/thread_pool.h"
@@ -87,6 +88,7 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("FILE");
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
+  add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "A policy holds its target if the 95th percentile of frame time is at most 1.10 times the target.\n"

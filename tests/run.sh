@@ -83,6 +83,7 @@ stage "packages" install_packages $packages
 stage "build with g++, Release" build_framesim build all -DCMAKE_BUILD_TYPE=Release
 [ "$failed" -eq 0 ] || finish
 stage "tests" all_tests build
+stage "installed: a policy from outside of the tree" sh tests/install/run.sh build
 stage "golden tables" build/framesim check tests/golden --quiet
 [ "$quick" = no ] || finish
 
