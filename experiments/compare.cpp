@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -10,10 +11,12 @@
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
 #include "experiments/plugin.h"
+#include "experiments/report/report.h"
 #include "experiments/table.h"
 #include "experiments/terminal.h"
 #include "experiments/thread_pool.h"
 #include "experiments/verbs.h"
+#include "experiments/version.h"
 
 namespace framesim {
 namespace {
@@ -22,7 +25,7 @@ struct CompareOptions {
   ComparisonOptions comparison;
   int jobs = default_jobs();
   std::string format = std::string(kTableFormatNames[0]);
-  std::string output, plot_folder;
+  std::string output, plot_folder, report;
 };
 
 TableFormat read_format(const std::string& text) {
@@ -35,6 +38,7 @@ TableFormat read_format(const std::string& text) {
 // Whatever can be refused is refused before the first run.
 void prepare_outputs(const CompareOptions& options) {
   if (!options.output.empty()) check_writable(options.output);
+  if (!options.report.empty()) check_writable(options.report);
   if (options.plot_folder.empty()) return;
   require_gnuplot();
   make_folder(options.plot_folder);
@@ -52,18 +56,44 @@ void print_table(const CompareOptions& options, std::span<const RunResult> resul
   }
 }
 
+// The views are of the last policy that was named, on each scene at its first target.
+std::vector<Job> jobs_to_view(const std::vector<Job>& jobs) {
+  std::vector<Job> list;
+  for (const Job& job : jobs) {
+    const auto same = [&](const Job& other) { return to_string(other.spec.scene) == to_string(job.spec.scene); };
+    const auto known = std::find_if(list.begin(), list.end(), same);
+    if (known == list.end()) {
+      list.push_back(job);
+    } else if (known->spec.target_s == job.spec.target_s) {
+      *known = job;
+    }
+  }
+  return list;
+}
+
+void write_report(const std::string& path, std::span<const RunResult> results, const std::vector<Job>& to_view) {
+  ReportInput input{.runs = results, .manifest = {{"framesim", fmt::format("{} (commit {})", version(), commit())}}};
+  for (const Job& job : to_view) input.views.push_back(look_from_above(job.spec, *job.scene));
+  write_file(path, report_page(input));
+}
+
 void compare(const CompareOptions& options, const Session& session) {
   const TableFormat format = read_format(options.format);
   std::vector<Job> jobs = plan_comparison(options.comparison, {"command line"});
   const Yardstick yardstick = read_yardstick(options.comparison, {"command line"});
   prepare_outputs(options);
   const EngineKind asked = jobs.empty() ? EngineKind::automatic : jobs.front().spec.engine.kind;
+  const std::vector<Job> to_view = options.report.empty() ? std::vector<Job>{} : jobs_to_view(jobs);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RunResult> results = run_with_yardstick(std::move(jobs), yardstick, options.jobs, session.quiet);
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   print_table(options, results, format, yardstick);
   std::vector<std::string> written;
   if (!options.output.empty()) written.push_back(options.output);
+  if (!options.report.empty()) {
+    write_report(options.report, results, to_view);
+    written.push_back(options.report);
+  }
   if (!options.plot_folder.empty()) {
     for (std::string& path : write_plots(results, options.plot_folder)) written.push_back(std::move(path));
   }
@@ -88,6 +118,9 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("FILE");
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
+  verb->add_option("--report", options->report,
+                   "Write one self-contained page (HTML) to this file: table, curves, levels, the scenes from above")
+      ->type_name("FILE");
   add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
