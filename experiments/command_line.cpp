@@ -84,6 +84,10 @@ int parse_and_run(int argc, char** argv) {
   add_explain(app, session);
   add_check(app, session);
   add_tradeoff(app, session);
+  add_sweep(app, session);
+  add_merge(app, session);
+  add_query(app, session);
+  add_report(app, session);
   add_man(app);
   add_completion(app);
   app.footer(

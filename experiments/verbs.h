@@ -19,6 +19,10 @@ void add_compare(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_tradeoff(CLI::App& app, Session& session);
+void add_sweep(CLI::App& app, Session& session);
+void add_merge(CLI::App& app, Session& session);
+void add_query(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
 void add_man(CLI::App& app);         // both read the finished app: add them last
 void add_completion(CLI::App& app);
 

@@ -9,5 +9,7 @@ std::string_view version();
 // The commit that it was configured at, in 12 hex digits, with "+" behind it if the tree had changes; "unknown" outside of a
 // checkout.
 std::string_view commit();
+// What the compiler was told: optimisation, warnings, floating point.
+std::string_view compile_flags();
 
 }  // namespace framesim

@@ -190,7 +190,7 @@ function drawBlock(block) {
   const some = inBlock.length > 0;
   for (const id of ['times', 'spread', 'mix']) find(id).hidden = !some;
   if (some) { drawCurves(); drawTimes(); drawSpread(); drawMix(); }
-  else find('times-note').textContent = 'No rows of frames are stored for this scene and target: sweep with frames = true keeps them.';
+  else find('times-note').textContent = 'No rows of frames are stored for this scene and target: a sweep with frame_rows = true keeps them.';
   drawWork(block);
 }
 
