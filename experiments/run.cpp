@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/aim.h"
 #include "experiments/run_effects.h"
 #include "experiments/run_parts.h"
 #include "policies/registry.h"
@@ -131,6 +132,11 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
 }
 
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
+  return spec.aim ? run_aimed(spec, scene, on_frame) : run_with_budgets(spec, scene, {}, on_frame);
+}
+
+RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<const double> budgets_s,
+                           const std::function<void()>& on_frame) {
   const Parts parts = make_parts(spec, scene);
   RunResult result = describe(spec, scene, parts);
   Simulation simulation({.scene = *parts.source,
@@ -144,6 +150,7 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
                          .engine = spec.engine,
                          .bound = spec.bound,
                          .check_selections = spec.verify,
+                         .budgets_s = budgets_s,
                          .profile = spec.profile ? &result.profile : nullptr});
   const std::int64_t frames = frames_to_run(spec, scene);
   result.records.reserve(static_cast<std::size_t>(frames));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct RunSpec {
   std::int64_t frames = 0;  // at most so many; 0 = the whole camera path
   EngineOptions engine;
   bool free_decisions = false;  // the simulated machine charges nothing for a policy's operations
+  bool aim = false;             // correct each frame's budget by what the pipeline made of it: see aim.h
   bool bound = false;           // find the upper bound on each frame's benefit
   bool profile = false;         // measure where the host's time goes: RunResult::profile
   bool verify = false;          // check every selection against the rules (slow)
@@ -94,6 +96,9 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene);
 // Runs it. `scene` is read only, so that runs on several threads may share it. `on_frame`, if given, is called after
 // each frame, on the calling thread.
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame = {});
+// The same with a budget for each frame in place of the planner's; `budgets_s` is as long as the run, or empty.
+RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<const double> budgets_s,
+                           const std::function<void()>& on_frame = {});
 
 // A run that holds its target: the 95th percentile of frame time is at most 1.10 times the target.
 inline constexpr double kHoldTolerance = 1.10;

@@ -106,6 +106,7 @@ void Simulation::run_logic() {
 }
 
 double Simulation::plan_budget() const {
+  if (!config_.budgets_s.empty()) return config_.budgets_s[static_cast<std::size_t>(record_.frame)];
   const MachineProfile& machine = parts_.machine.profile();
   return parts_.planner.budget_s(
       {.target_s = config_.target_s,
