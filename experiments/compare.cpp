@@ -5,10 +5,14 @@
 #include <chrono>
 #include <memory>
 
+#include "experiments/cells.h"
 #include "experiments/comparison.h"
 #include "experiments/gnuplot.h"
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
+#include "experiments/progress.h"
+#include "experiments/seeds.h"
+#include "experiments/statistics/replicated.h"
 #include "experiments/table.h"
 #include "experiments/terminal.h"
 #include "experiments/thread_pool.h"
@@ -21,15 +25,9 @@ struct CompareOptions {
   ComparisonOptions comparison;
   int jobs = default_jobs();
   std::string format = std::string(kTableFormatNames[0]);
-  std::string output, plot_folder;
+  std::string output, plot_folder, seeds;
+  bool yardstick_given = false;
 };
-
-TableFormat read_format(const std::string& text) {
-  for (std::size_t i = 0; i < std::size(kTableFormatNames); ++i) {
-    if (kTableFormatNames[i] == text) return static_cast<TableFormat>(i);
-  }
-  throw UsageError(fmt::format("--format: '{}' is unknown; allowed: {}", text, fmt::join(kTableFormatNames, ", ")));
-}
 
 // Whatever can be refused is refused before the first run.
 void prepare_outputs(const CompareOptions& options) {
@@ -51,8 +49,43 @@ void print_table(const CompareOptions& options, std::span<const RunResult> resul
   }
 }
 
+// The policies over many seeds: each scene, target and policy by its seeds, without their records.
+std::vector<Replicated> run_replicated(const CompareOptions& options, const std::vector<Job>& jobs, std::int64_t seeds,
+                                       bool quiet) {
+  std::int64_t frames = 0;
+  for (const Job& job : jobs) frames += seeds * frames_to_run(job.spec, *job.scene);
+  std::vector<Replicated> results(jobs.size());
+  Progress progress("frames", frames, quiet);
+  parallel_for(jobs.size(), options.jobs, [&](std::size_t i) {
+    SeedRuns runs = run_seeds(jobs[i].spec, *jobs[i].scene, seeds, [&] { progress.advance(); });
+    for (std::int64_t s = 0; s < seeds; ++s) {
+      results[i].seeds.push_back(runs.parts.seed + static_cast<std::uint64_t>(s));
+    }
+    results[i].parts = std::move(runs.parts);
+    results[i].summaries = std::move(runs.summaries);
+  });
+  return results;
+}
+
+void compare_seeds(const CompareOptions& options, const Session& session) {
+  const TableFormat format = read_table_format(options.format);
+  if (!options.plot_folder.empty()) throw UsageError("--plot is about one seed and does not go with --seeds");
+  if (options.yardstick_given) throw UsageError("--yardstick is about one seed and does not go with --seeds");
+  const InputLocation where{"command line"};
+  const std::int64_t seeds = read_seed_count(options.seeds, read_shared(options.comparison.shared, where).seed);
+  const std::vector<Job> jobs = plan_comparison(options.comparison, where);
+  prepare_outputs(options);
+  const std::string text =
+      format_replicated(run_replicated(options, jobs, seeds, session.quiet), format, {"command line"});
+  if (options.output.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_file(options.output, text);
+  }
+}
+
 void compare(const CompareOptions& options, const Session& session) {
-  const TableFormat format = read_format(options.format);
+  const TableFormat format = read_table_format(options.format);
   std::vector<Job> jobs = plan_comparison(options.comparison, {"command line"});
   const Yardstick yardstick = read_yardstick(options.comparison, {"command line"});
   prepare_outputs(options);
@@ -85,6 +118,11 @@ void add_compare(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--output,-o", options->output, "Write the table to this file instead of standard output")
       ->type_name("FILE");
+  verb->add_option(
+          "--seeds", options->seeds,
+          "Run N seeds from --seed up, and compare the policies by them: confidence intervals, paired differences "
+          "to the best, tests of whether it is better by chance. Without yardsticks")
+      ->type_name("N");
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
   add_quiet_option(*verb, session.quiet);
@@ -97,8 +135,12 @@ void add_compare(CLI::App& app, Session& session) {
       "  framesim compare\n"
       "  framesim compare --scenes street,auditorium --policies robin-hood:value=8,levels=no,static --targets "
       "25ms,60fps\n"
+      "  framesim compare --scenes street --policies static,pid,funkhouser --effect jitter:sigma=0.1 --seeds 20\n"
       "  framesim compare --format csv -o table.csv --plot pictures --jobs 2");
-  verb->callback([options, &session] { compare(*options, session); });
+  verb->callback([options, verb, &session] {
+    options->yardstick_given = verb->count("--yardstick") > 0;
+    options->seeds.empty() ? compare(*options, session) : compare_seeds(*options, session);
+  });
 }
 
 }  // namespace framesim

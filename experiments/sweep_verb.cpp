@@ -28,8 +28,8 @@ void sweep(const SweepOptions& options, const Session& session) {
   const Sweep plan = read_sweep(options.file);
   SweepOutcome outcome;
   {
-    Store store = Store::begin(options.store, identity_of(plan, shard),
-                               this_program("framesim sweep " + options.file), options.resume);
+    Store store = Store::begin(options.store, identity_of(plan, shard), this_program("framesim sweep " + options.file),
+                               options.resume);
     outcome = run_sweep(plan, shard, store, options.jobs, session.quiet);
   }
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -53,19 +53,24 @@ void add_sweep(CLI::App& app, Session& session) {
   verb->add_option("--store", options->store, "SQLite file for the results")->type_name("FILE")->required();
   verb->add_flag("--resume", options->resume,
                  "Go on with a store that is there: run what is missing. Without it, a store with content is refused");
-  verb->add_option("--shard", options->shard,
-                   "i/n: only the runs whose number leaves remainder i when divided by n. i from 0 to n; n stands for 0, so "
-                   "that job arrays may count from 0 or from 1. Each shard has a store of its own; see 'framesim merge'")
+  verb->add_option(
+          "--shard", options->shard,
+          "i/n: only the runs whose number leaves remainder i when divided by n. i from 0 to n; n stands for 0, so "
+          "that job arrays may count from 0 or from 1. Each shard has a store of its own; see 'framesim merge'")
       ->type_name("i/n")
       ->capture_default_str();
   add_jobs_option(*verb, options->jobs);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
-      "SPEC has framesim = 1 and the lists scenes and policies; it may have the lists targets (or [\"all\"]), estimators,\n"
-      "planners, overlaps, effects, no_effects, and machine, seeds (how many), first_seed, frames, fidelity, yardstick\n"
-      "(none, bound, least, parts; least and parts make ideal runs for each run), frame_rows (true: keep every frame), and\n"
+      "SPEC has framesim = 1 and the lists scenes and policies; it may have the lists targets (or [\"all\"]), "
+      "estimators,\n"
+      "planners, overlaps, effects, no_effects, and machine, seeds (how many), first_seed, frames, fidelity, "
+      "yardstick\n"
+      "(none, bound, least, parts; least and parts make ideal runs for each run), frame_rows (true: keep every frame), "
+      "and\n"
       "tables [[vary]] with of (scene, policy, estimator, planner, effect), name, key, values: a run for each value.\n"
-      "Each run is one transaction: kill the program at any point, and --resume gives what an undisturbed sweep gives.\n"
+      "Each run is one transaction: kill the program at any point, and --resume gives what an undisturbed sweep "
+      "gives.\n"
       "Examples:\n"
       "  framesim sweep sweep.toml --store results.sqlite --jobs 4\n"
       "  framesim sweep sweep.toml --store results.sqlite --resume\n"

@@ -67,19 +67,19 @@ TEST_CASE("sweep: the content does not depend on the number of jobs") {
 
 TEST_CASE("sweep: [[vary]] multiplies what it names and leaves the others") {
   const TestFolder folder;
-  folder.write("sweep.toml", std::string("framesim = 1\nscenes = [\"street\"]\npolicies = [\"pid\", \"static\"]\nframes = "
-                                         "5\neffects = [\"jitter:sigma=0.1\"]\n") +
-                                 "[[vary]]\nof = \"policy\"\nname = \"static\"\nkey = \"pixels-per-polygon\"\nvalues = "
-                                 "[16, 64, 256]\n[[vary]]\nof = \"effect\"\nname = \"jitter\"\nkey = \"sigma\"\nvalues = "
-                                 "[0.1, 0.2]\n");
+  folder.write("sweep.toml",
+               std::string("framesim = 1\nscenes = [\"street\"]\npolicies = [\"pid\", \"static\"]\nframes = "
+                           "5\neffects = [\"jitter:sigma=0.1\"]\n") +
+                   "[[vary]]\nof = \"policy\"\nname = \"static\"\nkey = \"pixels-per-polygon\"\nvalues = "
+                   "[16, 64, 256]\n[[vary]]\nof = \"effect\"\nname = \"jitter\"\nkey = \"sigma\"\nvalues = "
+                   "[0.1, 0.2]\n");
   REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
-  const ProgramRun rows =
-      query(folder, "s.sqlite", {"SELECT policy, effects FROM runs", "--format", "csv"});
+  const ProgramRun rows = query(folder, "s.sqlite", {"SELECT policy, effects FROM runs", "--format", "csv"});
   // Two effects lists, each with pid and three static.
   std::string expected = "policy,effects\n";
   for (const char* sigma : {"0.1", "0.2"}) {
-    for (const char* policy : {"pid", "static:pixels-per-polygon=16", "static:pixels-per-polygon=64",
-                               "static:pixels-per-polygon=256"}) {
+    for (const char* policy :
+         {"pid", "static:pixels-per-polygon=16", "static:pixels-per-polygon=64", "static:pixels-per-polygon=256"}) {
       expected += fmt::format("{},\"semantics, jitter:sigma={}\"\n", policy, sigma);
     }
   }
@@ -139,8 +139,10 @@ TEST_CASE("sweep: a store that another program made is not gone on with") {
   const TestFolder other;
   other.write("sweep.toml", kSmallSweep);
   REQUIRE(sweep(other, "s.sqlite").exit_code == 0);
-  Database(other.path("s.sqlite"), Database::Open::existing).run("UPDATE manifest SET cpu = 'Z80'; DELETE FROM frame "
-                                                                  "WHERE run = 7; DELETE FROM run WHERE id = 7");
+  Database(other.path("s.sqlite"), Database::Open::existing)
+      .run(
+          "UPDATE manifest SET cpu = 'Z80'; DELETE FROM frame "
+          "WHERE run = 7; DELETE FROM run WHERE id = 7");
   REQUIRE(sweep(other, "s.sqlite", {"--resume"}).exit_code == 0);
   CHECK(query(other, "s.sqlite", {"SELECT m.runs FROM manifests m", "--format", "csv"}).out == "runs\n11\n1\n");
 }
@@ -158,7 +160,8 @@ TEST_CASE("query: only reads, and says what it can show") {
   check_refused(query(folder, "sweep.toml"), 3, {"not an SQLite database"});
   check_refused(query(folder, ""), 3, {"folder"});
   CHECK(folder.read("s.sqlite") == before);
-  CHECK(query(folder, "s.sqlite", {"SELECT count(*) AS n, 'a,b' AS t, 1.5 AS x, NULL AS y FROM frames", "--format", "json"})
+  CHECK(query(folder, "s.sqlite",
+              {"SELECT count(*) AS n, 'a,b' AS t, 1.5 AS x, NULL AS y FROM frames", "--format", "json"})
             .out == "[\n  {\"n\": 240, \"t\": \"a,b\", \"x\": 1.5, \"y\": null}\n]\n");
   CHECK(query(folder, "s.sqlite", {"progress", "--format", "csv"}).out ==
         "of_sweep,shard_index,shard_count,of_shard,done\n12,0,1,12,12\n");
@@ -166,7 +169,8 @@ TEST_CASE("query: only reads, and says what it can show") {
 
 TEST_CASE("sweep: every file that goes in is in the store with its SHA-256") {
   const TestFolder folder;
-  folder.write("sweep.toml", "framesim = 1\nscenes = [\"street\"]\npolicies = [\"static\"]\nframes = 5\nmachine = \"m.toml\"\n");
+  folder.write("sweep.toml",
+               "framesim = 1\nscenes = [\"street\"]\npolicies = [\"static\"]\nframes = 5\nmachine = \"m.toml\"\n");
   std::ifstream in(std::string(kSourceFolder) + "/scenes/data/machines/street.toml");
   const std::string machine((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   folder.write("m.toml", machine);
