@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -10,7 +11,9 @@
 #include "experiments/gnuplot.h"
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
+#include "experiments/plugin.h"
 #include "experiments/progress.h"
+#include "experiments/report/report.h"
 #include "experiments/seeds.h"
 #include "experiments/statistics/baseline.h"
 #include "experiments/statistics/replicated.h"
@@ -18,6 +21,7 @@
 #include "experiments/terminal.h"
 #include "experiments/thread_pool.h"
 #include "experiments/verbs.h"
+#include "experiments/version.h"
 
 namespace framesim {
 namespace {
@@ -26,7 +30,7 @@ struct CompareOptions {
   ComparisonOptions comparison;
   int jobs = default_jobs();
   std::string format = std::string(kTableFormatNames[0]);
-  std::string output, plot_folder, seeds;
+  std::string output, plot_folder, report, seeds;
   std::string baseline, noise_threshold = "0%", junit;
   bool fail_on_regression = false;
   bool yardstick_given = false;
@@ -62,6 +66,7 @@ class Baseline {
 // Whatever can be refused is refused before the first run.
 void prepare_outputs(const CompareOptions& options) {
   if (!options.output.empty()) check_writable(options.output);
+  if (!options.report.empty()) check_writable(options.report);
   if (options.plot_folder.empty()) return;
   require_gnuplot();
   make_folder(options.plot_folder);
@@ -100,6 +105,7 @@ std::vector<Replicated> run_replicated(const CompareOptions& options, const std:
 void compare_seeds(const CompareOptions& options, Session& session) {
   const TableFormat format = read_table_format(options.format);
   if (!options.plot_folder.empty()) throw UsageError("--plot is about one seed and does not go with --seeds");
+  if (!options.report.empty()) throw UsageError("--report is about one seed and does not go with --seeds");
   if (options.yardstick_given) throw UsageError("--yardstick is about one seed and does not go with --seeds");
   const InputLocation where{"command line"};
   const std::int64_t seeds = read_seed_count(options.seeds, read_shared(options.comparison.shared, where).seed);
@@ -116,6 +122,27 @@ void compare_seeds(const CompareOptions& options, Session& session) {
   baseline.judge(watched(runs), format, session);
 }
 
+// The views are of the last policy that was named, on each scene at its first target.
+std::vector<Job> jobs_to_view(const std::vector<Job>& jobs) {
+  std::vector<Job> list;
+  for (const Job& job : jobs) {
+    const auto same = [&](const Job& other) { return to_string(other.spec.scene) == to_string(job.spec.scene); };
+    const auto known = std::find_if(list.begin(), list.end(), same);
+    if (known == list.end()) {
+      list.push_back(job);
+    } else if (known->spec.target_s == job.spec.target_s) {
+      *known = job;
+    }
+  }
+  return list;
+}
+
+void write_report(const std::string& path, std::span<const RunResult> results, const std::vector<Job>& to_view) {
+  ReportInput input{.runs = results, .manifest = {{"framesim", fmt::format("{} (commit {})", version(), commit())}}};
+  for (const Job& job : to_view) input.views.push_back(look_from_above(job.spec, *job.scene));
+  write_file(path, report_page(input));
+}
+
 void compare(const CompareOptions& options, Session& session) {
   const TableFormat format = read_table_format(options.format);
   std::vector<Job> jobs = plan_comparison(options.comparison, {"command line"});
@@ -123,6 +150,7 @@ void compare(const CompareOptions& options, Session& session) {
   const Baseline baseline(options);
   prepare_outputs(options);
   const EngineKind asked = jobs.empty() ? EngineKind::automatic : jobs.front().spec.engine.kind;
+  const std::vector<Job> to_view = options.report.empty() ? std::vector<Job>{} : jobs_to_view(jobs);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RunResult> results = run_with_yardstick(std::move(jobs), yardstick, options.jobs, session.quiet);
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -130,6 +158,10 @@ void compare(const CompareOptions& options, Session& session) {
   baseline.judge(watched(results), format, session);
   std::vector<std::string> written;
   if (!options.output.empty()) written.push_back(options.output);
+  if (!options.report.empty()) {
+    write_report(options.report, results, to_view);
+    written.push_back(options.report);
+  }
   if (!options.plot_folder.empty()) {
     for (std::string& path : write_plots(results, options.plot_folder)) written.push_back(std::move(path));
   }
@@ -175,6 +207,10 @@ void add_compare(CLI::App& app, Session& session) {
       ->needs(baseline);
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
+  verb->add_option("--report", options->report,
+                   "Write one self-contained page (HTML) to this file: table, curves, levels, the scenes from above")
+      ->type_name("FILE");
+  add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "A policy holds its target if the 95th percentile of frame time is at most 1.10 times the target.\n"

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "experiments/options.h"
+#include "experiments/plugin.h"
 #include "experiments/verbs.h"
 #include "scenes/registry.h"
 
@@ -161,6 +162,7 @@ void add_explain(CLI::App& app, Session&) {
   verb->add_option("--policy", options->policy, "A name from 'framesim list policies', with parameters")
       ->type_name("SPEC")
       ->capture_default_str();
+  add_plugin_option(*verb);
   add_shared_options(*verb, options->shared);
   verb->footer(
       "An effect is active, inert (declared, but it cannot change the result, and is left out) or not declared.\n"

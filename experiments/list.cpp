@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/plugin.h"
 #include "experiments/verbs.h"
 #include "policies/registry.h"
 #include "scenes/generator.h"
@@ -127,6 +128,7 @@ void add_list(CLI::App& app, Session&) {
         if (std::find(names.begin(), names.end(), word) != names.end()) return std::string();
         return fmt::format("there is no list '{}'; allowed: {}", word, fmt::join(names, ", "));
       });
+  add_plugin_option(*verb);
   verb->footer(
       "Parameters are set as name:key=value,key=value; each is shown with its default and, in brackets, what is "
       "allowed.\n"

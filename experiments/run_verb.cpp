@@ -13,6 +13,7 @@
 #include "experiments/options.h"
 #include "experiments/output_file.h"
 #include "experiments/plot.h"
+#include "experiments/plugin.h"
 #include "experiments/progress.h"
 #include "experiments/seeds.h"
 #include "experiments/table.h"
@@ -276,6 +277,7 @@ void add_run(CLI::App& app, Session& session) {
                  "Add where this host's time went, part by part of a step; replaces the critical path");
   verb->add_option("--plot", options->plot_folder, "Write pictures (SVG) to this folder; needs gnuplot")
       ->type_name("DIR");
+  add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "Examples:\n"

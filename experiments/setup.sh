@@ -3,7 +3,7 @@
 # Needs Debian 12 or a relative of it; elsewhere it says what is needed and goes on. Nothing is installed, and no
 # privileges are asked for, when everything is there. Safe to run again.
 
-BUILD_PACKAGES="g++ cmake make libfmt-dev libglm-dev libboost-graph-dev libcli11-dev libtomlplusplus-dev librandom123-dev libhwy-dev nlohmann-json3-dev libsqlite3-dev catch2 gnuplot-nox"
+BUILD_PACKAGES="g++ cmake make libfmt-dev libglm-dev libboost-graph-dev libcli11-dev libtomlplusplus-dev librandom123-dev libhwy-dev nlohmann-json3-dev libsqlite3-dev libjs-dygraphs catch2 gnuplot-nox"
 
 say() { printf '%s\n' "$*"; }
 

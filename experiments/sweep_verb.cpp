@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 
 #include "experiments/options.h"
 #include "experiments/output_file.h"
+#include "experiments/plugin.h"
 #include "experiments/store/sweep.h"
 #include "experiments/thread_pool.h"
 #include "experiments/verbs.h"
@@ -17,6 +19,7 @@ namespace {
 
 struct SweepOptions {
   std::string file, store, shard = "0/1";
+  std::vector<std::string> plugins;
   bool resume = false;
   int jobs = default_jobs();
 };
@@ -25,11 +28,16 @@ void sweep(const SweepOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   const Shard shard = parse_shard(options.shard);
   check_writable(options.store);
-  const Sweep plan = read_sweep(options.file);
+  Sweep plan = read_sweep(options.file);
+  std::string command = "framesim sweep " + options.file;
+  for (const std::string& plugin : options.plugins) {
+    add_input_files("plug-in " + std::filesystem::path(plugin).filename().string(), plugin, plan.inputs);
+    command += " --plugin " + plugin;
+  }
   SweepOutcome outcome;
   {
-    Store store = Store::begin(options.store, identity_of(plan, shard), this_program("framesim sweep " + options.file),
-                               options.resume);
+    Store store =
+        Store::begin(options.store, identity_of(plan, shard), this_program(std::move(command)), options.resume);
     outcome = run_sweep(plan, shard, store, options.jobs, session.quiet);
   }
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -60,6 +68,7 @@ void add_sweep(CLI::App& app, Session& session) {
       ->type_name("i/n")
       ->capture_default_str();
   add_jobs_option(*verb, options->jobs);
+  add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "SPEC has framesim = 1 and the lists scenes and policies; it may have the lists targets (or [\"all\"]), "
@@ -77,7 +86,10 @@ void add_sweep(CLI::App& app, Session& session) {
       "  framesim sweep sweep.toml --store part-$SLURM_ARRAY_TASK_ID.sqlite --resume \\\n"
       "    --shard $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT\n"
       "  framesim query results.sqlite");
-  verb->callback([options, &session] { sweep(*options, session); });
+  verb->callback([options, verb, &session] {
+    options->plugins = verb->get_option("--plugin")->results();
+    sweep(*options, session);
+  });
 }
 
 }  // namespace framesim

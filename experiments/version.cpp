@@ -3,5 +3,6 @@
 namespace framesim {
 
 std::string_view version() { return FRAMESIM_VERSION; }
+std::string_view commit() { return FRAMESIM_COMMIT; }
 
 }  // namespace framesim

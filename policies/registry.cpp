@@ -1,6 +1,12 @@
 #include "policies/registry.h"
 
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "sim/check.h"
 
 namespace framesim {
 
@@ -30,11 +36,29 @@ namespace framesim {
 FRAMESIM_POLICIES(FRAMESIM_DECLARE)
 #undef FRAMESIM_DECLARE
 
-std::span<const PolicyEntry> policies() {
+namespace {
+
+std::vector<PolicyEntry>& entries() {
 #define FRAMESIM_CALL(policy) policy(),
-  static const std::vector<PolicyEntry> entries = {FRAMESIM_POLICIES(FRAMESIM_CALL)};
+  static std::vector<PolicyEntry> list = {FRAMESIM_POLICIES(FRAMESIM_CALL)};
 #undef FRAMESIM_CALL
-  return entries;
+  return list;
+}
+
+}  // namespace
+
+std::span<const PolicyEntry> policies() { return entries(); }
+
+void register_policy(PolicyEntry entry) {
+  const InputLocation where{fmt::format("policy '{}'", entry.name)};
+  if (entry.name.empty() || entry.name.find_first_of(":,= \t\n") != std::string_view::npos) {
+    throw InputError(where, "a policy's name is not empty and has no ':', ',', '=' or blank in it");
+  }
+  for (const PolicyEntry& known : policies()) {
+    if (known.name == entry.name) throw InputError(where, "this name is taken by another policy");
+  }
+  FRAMESIM_CHECK(entry.make != nullptr, "a policy without a function that makes it");
+  entries().push_back(std::move(entry));
 }
 
 }  // namespace framesim

@@ -13,9 +13,6 @@
 #include "scenes/toml_document.h"
 #include "sim/check.h"
 
-#ifndef FRAMESIM_COMMIT
-#define FRAMESIM_COMMIT "unknown"
-#endif
 #ifndef FRAMESIM_FLAGS
 #define FRAMESIM_FLAGS "unknown"
 #endif
@@ -73,7 +70,7 @@ bool Manifest::same_program(const Manifest& other) const {
 
 Manifest this_program(std::string command) {
   return {.version = std::string(version()),
-          .commit = FRAMESIM_COMMIT,
+          .commit = std::string(framesim::commit()),
           .compiler = compiler(),
           .flags = FRAMESIM_FLAGS,
           .cpu = cpu(),

@@ -36,9 +36,8 @@ inline std::string content_of(std::FILE* file) {
   return text;
 }
 
-// Without a shell: each argument arrives as it is. Standard input is empty.
-inline ProgramRun run_program(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), kProgramPath);
+// The program at arguments[0], without a shell: each argument arrives as it is. Standard input is empty.
+inline ProgramRun run_command(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -52,12 +51,18 @@ inline ProgramRun run_program(std::vector<std::string> arguments) {
   posix_spawn_file_actions_adddup2(&actions, fileno(out), 1);
   posix_spawn_file_actions_adddup2(&actions, fileno(err), 2);
   pid_t child = 0;
-  const int error = posix_spawn(&child, kProgramPath, &actions, nullptr, argv.data(), environ);
+  const int error = posix_spawn(&child, argv.front(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   REQUIRE(error == 0);
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
+}
+
+// framesim itself.
+inline ProgramRun run_program(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), kProgramPath);
+  return run_command(std::move(arguments));
 }
 
 // An empty folder, removed with everything in it when the test ends.

@@ -1,0 +1,5 @@
+#pragma once
+
+#include "sim/policy.h"
+
+framesim::PolicyEntry nearest_policy();
