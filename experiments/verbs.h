@@ -10,7 +10,7 @@ namespace framesim {
 // What verbs share with main.
 struct Session {
   bool quiet = false;  // no progress, no remarks on stderr
-  int exit_code = 0;   // 1 if `check` found a difference
+  int exit_code = 0;   // 1 if `check` found a difference, or `compare` a regression
 };
 
 void add_list(CLI::App& app, Session& session);
@@ -22,6 +22,7 @@ void add_tradeoff(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);
 void add_merge(CLI::App& app, Session& session);
 void add_query(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
 void add_man(CLI::App& app);         // both read the finished app: add them last
 void add_completion(CLI::App& app);
 

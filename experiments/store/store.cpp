@@ -49,6 +49,9 @@ std::uint64_t read_hash(const std::string& text) {
   return hash;
 }
 
+void read_cell(const Statement& row, int column, std::int64_t& value) { value = row.whole(column); }
+void read_cell(const Statement& row, int column, double& value) { value = row.number(column); }
+
 void read_inputs(const Database& database, StoreIdentity& identity) {
   Statement rows = database.prepare("SELECT name, sha256 FROM input ORDER BY name");
   while (rows.step()) identity.inputs.push_back({rows.text(0), rows.text(1)});
@@ -228,8 +231,18 @@ std::vector<StoredRun> Store::runs() const {
   return list;
 }
 
-bool Store::has_frames(std::int64_t run) const {
-  return database_.whole(fmt::format("SELECT count(*) FROM frame WHERE run = {}", run)) > 0;
+std::vector<FrameRecord> Store::records(std::int64_t run) const {
+  std::vector<FrameRecord> list;
+  Statement rows = database_.prepare("SELECT * FROM frame WHERE run = ? ORDER BY frame");
+  rows.bind(1, run);
+  while (rows.step()) {
+    FrameRecord& record = list.emplace_back();
+    int at = 1;  // behind the run's number
+#define X(type, name, unit, meaning) read_cell(rows, at++, record.name);
+    FRAMESIM_FRAME_COLUMNS(X)
+#undef X
+  }
+  return list;
 }
 
 void Store::add_frames(std::int64_t id, const RunResult& result) {

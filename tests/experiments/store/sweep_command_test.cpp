@@ -1,6 +1,7 @@
 // framesim sweep and query through the binary.
 #include <fmt/format.h>
 
+#include "experiments/store/store.h"
 #include "tests/experiments/store/store_files.h"
 
 namespace framesim {
@@ -63,6 +64,42 @@ TEST_CASE("sweep: the content does not depend on the number of jobs") {
   CHECK(count_in_store(folder.path("1.sqlite"), "run") == 12);
   CHECK(count_in_store(folder.path("1.sqlite"), "frame") == 12 * 20);
   CHECK(folder.names() == std::vector<std::string>{"1.sqlite", "5.sqlite", "sweep.toml"});
+}
+
+TEST_CASE("sweep: the frames that a store keeps are those that the run had, bit for bit") {
+  const TestFolder folder;
+  folder.write("sweep.toml", kSmallSweep);
+  REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+  const Store store = Store::open(folder.path("s.sqlite"));
+  const std::vector<StoredRun> runs = store.runs();
+  REQUIRE(runs.size() == 12);
+  for (const StoredRun& run : runs) {
+    CAPTURE(run.id);
+    const std::vector<FrameRecord> records = store.records(run.id);
+    CHECK(records.size() == 20);
+    CHECK(hash(records) == run.result.records_hash);
+  }
+}
+
+TEST_CASE("report: a store as a page, with curves where it has frames") {
+  const TestFolder folder;
+  folder.write("sweep.toml", kSmallSweep);
+  REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+  const ProgramRun made = run_program({"report", folder.path("s.sqlite"), "-o", folder.path("r.html")});
+  CAPTURE(made.err);
+  if (has(made.err, "without dygraphs")) return;  // then there is no report at all
+  REQUIRE(made.exit_code == 0);
+  CHECK(made.out == folder.path("r.html") + "\n");
+  const std::string page = folder.read("r.html");
+  for (const char* word : {"robin-hood", "\"views\":[{", "sha256 of sweep.toml", "g++", "compiler"}) {
+    CAPTURE(word);
+    if (std::string(word) == "g++" && has(page, "clang++")) continue;
+    CHECK(has(page, word));
+  }
+  // A damaged store gives no page.
+  folder.write("bad.sqlite", "x");
+  check_refused(run_program({"report", folder.path("bad.sqlite"), "-o", folder.path("b.html")}), 3, {"not an SQLite"});
+  CHECK_FALSE(std::filesystem::exists(folder.path("b.html")));
 }
 
 TEST_CASE("sweep: [[vary]] multiplies what it names and leaves the others") {
