@@ -26,6 +26,7 @@ std::string conditions(const RunResult& r) {
 // One policy beside the best of its block.
 struct Line {
   const Replicated* run = nullptr;
+  std::string name;  // the policy; with its planner where it is there under several
   std::vector<double> errors;
   Estimate error;
   PairedTest against_best;  // of the best: nothing
@@ -43,12 +44,21 @@ struct SideBySide {
 Line make_line(const Replicated& run) {
   Line line;
   line.run = &run;
+  line.name = run.parts.policy;
   for (const Summary& summary : run.summaries) {
     line.errors.push_back(summary.avg_err);
     line.held += summary.p95_s <= kHoldTolerance * run.parts.target_s;
   }
   line.error = estimate(line.errors);
   return line;
+}
+
+void name_planners(std::vector<Line>& lines) {
+  for (Line& line : lines) {
+    const std::string& policy = line.run->parts.policy;
+    const auto same = [&](const Line& other) { return other.run->parts.policy == policy; };
+    if (std::count_if(lines.begin(), lines.end(), same) > 1) line.name = policy + " by " + line.run->parts.planner;
+  }
 }
 
 void set_beside_best(std::vector<Line>& lines, const InputLocation& where) {
@@ -62,7 +72,7 @@ void set_beside_best(std::vector<Line>& lines, const InputLocation& where) {
       throw InputError(where,
                        fmt::format("policies {} and {} were run with different seeds, or not all runs are there; "
                                    "differences are paired by seed",
-                                   framesim::quoted(best.run->parts.policy), framesim::quoted(line.run->parts.policy)));
+                                   framesim::quoted(best.name), framesim::quoted(line.name)));
     }
     line.against_best = paired_test(best.errors, line.errors);
     line.times = ratio(line.error, best.error);
@@ -82,7 +92,10 @@ std::vector<SideBySide> side_by_side(std::span<const Replicated> runs, const Inp
     if (block == blocks.end()) block = blocks.insert(blocks.end(), {title, target_s, {}});
     block->lines.push_back(make_line(run));
   }
-  for (SideBySide& block : blocks) set_beside_best(block.lines, where);
+  for (SideBySide& block : blocks) {
+    name_planners(block.lines);
+    set_beside_best(block.lines, where);
+  }
   return blocks;
 }
 
@@ -108,14 +121,14 @@ std::string seeds_text(const Replicated& run) {
 
 std::string table_text(const SideBySide& block) {
   std::size_t width = 6;
-  for (const Line& line : block.lines) width = std::max(width, line.run->parts.policy.size());
+  for (const Line& line : block.lines) width = std::max(width, line.name.size());
   std::string text = fmt::format("{}; {}\n", block.title, seeds_text(*block.lines.front().run));
   text += fmt::format("  {:<{}} {:>9} {:>10} {:>10} {:>10}   {:>10} {:>10} {:>9} {:>9} {:>9}\n", "policy", width,
                       "holds", "AvgErr, %", "95 %", "std dev", "over best", "95 %", "worse in", "p (t)", "p (sign)");
   for (const Line& line : block.lines) {
     const Estimate& e = line.error;
-    text += fmt::format("  {:<{}} {:>9} {} {} {}", line.run->parts.policy, width,
-                        fmt::format("{}/{}", line.held, e.count), right(percent(e.mean), 10), right(half(e), 10),
+    text += fmt::format("  {:<{}} {:>9} {} {} {}", line.name, width, fmt::format("{}/{}", line.held, e.count),
+                        right(percent(e.mean), 10), right(half(e), 10),
                         right(e.count > 1 ? percent(e.deviation) : "NA", 10));
     if (&line != &block.lines.front()) {
       const PairedTest& test = line.against_best;
@@ -135,12 +148,12 @@ std::string verdict(const Line& line) {
 
 std::string verdict_text(const SideBySide& block) {
   if (block.lines.size() < 2) return "";
-  std::string text = fmt::format("  {} ran\n", block.lines.front().run->parts.policy);
+  std::string text = fmt::format("  {} ran\n", block.lines.front().name);
   for (std::size_t i = 1; i < block.lines.size(); ++i) {
     const Line& line = block.lines[i];
     const std::string times =
         line.times ? fmt::format("{:8.2f} ± {:.2f} times", line.times->value, line.times->deviation) : "      NA times";
-    text += fmt::format("  {} closer to the target than {} ({})\n", times, line.run->parts.policy, verdict(line));
+    text += fmt::format("  {} closer to the target than {} ({})\n", times, line.name, verdict(line));
   }
   return text;
 }
@@ -200,7 +213,7 @@ Cells as_cells(std::span<const SideBySide> blocks) {
                             number(line.error.mean),
                             number(line.error.deviation),
                             number(line.error.half_width),
-                            block.lines.front().run->parts.policy,
+                            block.lines.front().name,
                             unless_best(t.difference.mean),
                             unless_best(t.difference.half_width),
                             unless_best(static_cast<double>(t.higher)),

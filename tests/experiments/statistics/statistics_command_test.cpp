@@ -42,6 +42,19 @@ TEST_CASE("compare --seeds and query --statistics agree, though they run the see
   CHECK(has(text, "6/6   <0.0001    0.0312"));
 }
 
+TEST_CASE("query --statistics: one policy by several planners stands there under several names") {
+  const TestFolder folder;
+  folder.write("sweep.toml",
+               "framesim = 1\nscenes = [\"street\"]\npolicies = [\"robin-hood\"]\nplanners = [\"target\", "
+               "\"inverse\"]\nframes = 10\neffects = [\"jitter:sigma=0.1\"]\nseeds = 2\n");
+  REQUIRE(run_program({"sweep", folder.path("sweep.toml"), "--store", folder.path("s.sqlite")}).exit_code == 0);
+  const ProgramRun run = run_program({"query", folder.path("s.sqlite"), "--statistics"});
+  CAPTURE(run.out, run.err);
+  CHECK(run.exit_code == 0);
+  CHECK(has(run.out, "robin-hood by target"));
+  CHECK(has(run.out, "robin-hood by inverse"));
+}
+
 TEST_CASE("compare --seeds: where the seed changes nothing, no chance is claimed") {
   const ProgramRun run = run_program({"compare", "--scenes", "street", "--policies", "static,robin-hood", "--seeds",
                                       "4", "--frames", "20", "--quiet"});
