@@ -21,6 +21,7 @@ std::string reason(int code, const char* message) {
     case SQLITE_NOTADB:
       return "is not an SQLite database; name another file";
     case SQLITE_FULL:
+      return "cannot be written: the disk is full";
     case SQLITE_IOERR:
       return fmt::format("cannot be written, or not read back: {}; is the disk full?", message);
     case SQLITE_CORRUPT:
