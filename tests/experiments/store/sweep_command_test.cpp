@@ -55,6 +55,21 @@ TEST_CASE("sweep: the store's error table is compare's, byte for byte") {
   CHECK(view.out == query(folder, "s.sqlite", {"error_table", "--format", "csv"}).out);
 }
 
+TEST_CASE("sweep: each yardstick gives what compare gives with it") {
+  for (const char* yardstick : {"none", "least", "parts"}) {
+    CAPTURE(yardstick);
+    const TestFolder folder;
+    folder.write("sweep.toml", fmt::format("framesim = 1\nscenes = [\"street\"]\npolicies = [\"robin-hood\", "
+                                           "\"static\"]\nframes = 10\nyardstick = \"{}\"\n",
+                                           yardstick));
+    REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+    CHECK(query(folder, "s.sqlite", {"--format", "csv"}).out ==
+          run_program({"compare", "--scenes", "street", "--policies", "robin-hood,static", "--frames", "10",
+                       "--yardstick", yardstick, "--format", "csv", "--quiet"})
+              .out);
+  }
+}
+
 TEST_CASE("sweep: the content does not depend on the number of jobs") {
   const TestFolder folder;
   folder.write("sweep.toml", kSmallSweep);
