@@ -96,7 +96,7 @@ int parse_and_run(int argc, char** argv) {
       "  framesim run street --policy robin-hood --target 25ms\n"
       "  framesim explain street --policy robin-hood\n"
       "  framesim list policies\n"
-      "Exit codes: 0 done, 1 check found a difference, 2 wrong command line, 3 wrong input file, 4 internal error.");
+      "Exit codes: 0 done, 1 check found a difference or compare a regression, 2 wrong command line, 3 wrong input file, 4 internal error.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -35,7 +35,8 @@ void add_merge(CLI::App& app, Session& session) {
   add_quiet_option(*verb, session.quiet);
   verb->footer(
       "The result has the content of one undisturbed run of the whole sweep. Refused, with nothing written: stores of\n"
-      "different sweeps, inputs or programs; stores that disagree about a run; missing runs (the message says which shards\n"
+      "different sweeps, inputs or programs; stores that disagree about a run; missing runs (the message says which "
+      "shards\n"
       "to run again with --resume).\n"
       "Examples:\n"
       "  framesim merge results.sqlite part-*.sqlite\n"

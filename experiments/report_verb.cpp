@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "experiments/options.h"
@@ -20,29 +21,46 @@ struct ReportOptions {
   std::string store, output, view;
 };
 
-const InputLocation kStored{"the store's run"};
-
-Spec stored_spec(const std::string& text) { return parse_spec(text, kStored); }
-
-// What makes the same run again: the effects that ran are all there were to it.
-RunSpec spec_of(const RunResult& run, const Scene& scene) {
-  RunSpec spec{.scene = stored_spec(run.scene), .policy = stored_spec(run.policy), .estimator = stored_spec(run.estimator)};
-  if (run.machine != scene.machine.name) spec.machine = stored_spec(run.machine);
-  spec.overlap = parse_overlap(run.overlap, kStored);
-  spec.planner = stored_spec(run.planner);
-  spec.no_effects = {stored_spec("all")};
-  for (const std::string& effect : run.effects) spec.effects.push_back(stored_spec(effect));
-  spec.target_s = run.target_s;
-  spec.seed = run.seed;
-  spec.frames = static_cast<std::int64_t>(run.summary.frames) + 1;  // frame 0 is not measured
+// The run that gives these results, from their names. Effects are named in full, so that the scene's own are put aside first.
+RunSpec spec_of(const RunResult& result, const InputLocation& where) {
+  RunSpec spec;
+  spec.scene = parse_spec(result.scene, where);
+  spec.policy = parse_spec(result.policy, where);
+  spec.estimator = parse_spec(result.estimator, where);
+  spec.planner = parse_spec(result.planner, where);
+  spec.overlap = parse_overlap(result.overlap, where);
+  spec.no_effects = {parse_spec("all", where)};
+  for (const std::string& effect : result.effects) spec.effects.push_back(parse_spec(effect, where));
+  spec.target_s = result.target_s;
+  spec.seed = result.seed;
+  spec.frames = std::max<std::int64_t>(1, static_cast<std::int64_t>(result.records.size()));
   return spec;
 }
 
-// The run to look at in each scene: the asked policy's, else the closest to its target.
-std::vector<const RunResult*> runs_to_view(std::span<const RunResult> runs, const std::string& policy) {
+// Whether the run, made once more, has the stored frames. The bound is a column of theirs, and changes nothing else.
+bool gives(RunSpec spec, const Scene& scene, const RunResult& result) {
+  spec.bound = !std::isnan(result.records.back().bound);
+  return run(spec, scene).records_hash == result.records_hash;
+}
+
+// The scene from above under that run. Throws InputError where it is not there any more, or does not give those frames now.
+SceneView view_of(const RunResult& result, const std::string& store) {
+  RunSpec spec = spec_of(result, {store});
+  const Scene scene = load_scene(spec.scene);
+  if (!gives(spec, scene, result)) {  // then on another machine than its own
+    spec.machine = parse_spec(result.machine, {store});
+    if (!gives(spec, scene, result)) throw InputError({store}, "it does not give the stored frames any more");
+  }
+  return look_from_above(spec, scene);
+}
+
+// The run to look at in each scene, of those that kept their frames: the asked policy's, else the closest to its target.
+std::vector<const RunResult*> runs_to_view(std::span<const RunResult> results, const std::string& policy) {
   std::vector<const RunResult*> list;
-  for (const RunResult& run : runs) {
-    if (!policy.empty() && run.policy != policy) continue;
+  bool known = policy.empty();
+  for (const RunResult& run : results) {
+    known = known || run.policy == policy;
+    if (run.records.empty() || (!policy.empty() && run.policy != policy)) continue;
     const auto same = std::find_if(list.begin(), list.end(), [&](const RunResult* r) { return r->scene == run.scene; });
     if (same == list.end()) {
       list.push_back(&run);
@@ -50,67 +68,69 @@ std::vector<const RunResult*> runs_to_view(std::span<const RunResult> runs, cons
       *same = &run;
     }
   }
-  if (list.empty() && !policy.empty()) throw UsageError(fmt::format("--view: no run of the store is of policy '{}'", policy));
+  if (!known) throw UsageError(fmt::format("--view: no run of the store is of policy '{}'", policy));
   return list;
 }
 
-std::vector<SceneView> views_of(std::span<const RunResult> runs, const std::string& policy, const Session& session) {
+std::vector<SceneView> views_of(std::span<const RunResult> results, const ReportOptions& options, bool quiet) {
   std::vector<SceneView> views;
-  for (const RunResult* run : runs_to_view(runs, policy)) {
+  for (const RunResult* result : runs_to_view(results, options.view)) {
     try {
-      const Scene scene = load_scene(stored_spec(run->scene));
-      views.push_back(look_from_above(spec_of(*run, scene), scene));
-    } catch (const InputError& error) {  // a scene file that is no longer where it was: the page has the rest
-      if (!session.quiet) fmt::print(stderr, "no view of {} from above: {}\n", run->scene, error.what());
+      views.push_back(view_of(*result, options.store));
+    } catch (const InputError& error) {
+      if (quiet) continue;
+      fmt::print(stderr, "framesim: note: scene {} is not shown from above: {}\n", result->scene, error.what());
     }
   }
   return views;
 }
 
 std::vector<std::pair<std::string, std::string>> manifest_of(const Store& store) {
-  std::vector<std::pair<std::string, std::string>> list;
+  std::vector<std::pair<std::string, std::string>> rows;
   for (const auto& [id, m] : store.manifests()) {
-    list.insert(list.end(), {{"program", fmt::format("framesim {}, commit {}", m.version, m.commit)},
-                             {"compiler", fmt::format("{}, {}", m.compiler, m.flags)},
+    rows.insert(rows.end(), {{"framesim", fmt::format("{} (commit {})", m.version, m.commit)},
+                             {"compiler", m.compiler},
+                             {"flags", m.flags},
                              {"CPU", m.cpu},
                              {"command", m.command}});
   }
-  for (const InputFile& input : store.identity().inputs) list.emplace_back(input.name, "SHA-256 " + input.sha256);
-  return list;
+  for (const InputFile& input : store.identity().inputs) rows.emplace_back("sha256 of " + input.name, input.sha256);
+  return rows;
 }
 
 void report(const ReportOptions& options, const Session& session) {
   check_writable(options.output);
   const Store store = Store::open(options.store);
-  std::vector<RunResult> runs;
+  std::vector<RunResult> results;
   for (StoredRun& run : store.runs()) {
-    run.result.records = store.frames(run.id);
-    runs.push_back(std::move(run.result));
+    run.result.records = store.records(run.id);
+    results.push_back(std::move(run.result));
   }
-  write_file(options.output, report_page({.runs = runs,
-                                          .views = views_of(runs, options.view, session),
+  if (results.empty()) throw InputError({options.store}, "has no runs yet");
+  write_file(options.output, report_page({.runs = results,
+                                          .views = views_of(results, options, session.quiet),
                                           .manifest = manifest_of(store)}));
-  if (!session.quiet) fmt::print(stderr, "wrote {}\n", options.output);
+  fmt::print("{}\n", options.output);
 }
 
 }  // namespace
 
 void add_report(CLI::App& app, Session& session) {
-  CLI::App* verb = app.add_subcommand("report", "Make one self-contained page (HTML) of a store");
+  CLI::App* verb = app.add_subcommand("report", "Write one self-contained page (HTML) of what is in a store");
   const auto options = std::make_shared<ReportOptions>();
-  verb->add_option("STORE", options->store, "SQLite file of 'framesim sweep' or 'framesim merge'")->type_name("")->required();
-  verb->add_option("--output,-o", options->output, "HTML file to write")->type_name("FILE")->required();
+  verb->add_option("STORE", options->store, "A store that 'framesim sweep' or 'framesim merge' made")
+      ->type_name("")
+      ->required();
+  verb->add_option("--output,-o", options->output, "The page")->type_name("FILE")->required();
   verb->add_option("--view", options->view,
                    "Policy, with its parameters, whose run is seen from above; else each scene's closest to its target")
       ->type_name("SPEC");
   add_plugin_option(*verb);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
-      "The page opens without a network. Curves need the frames: a sweep keeps them with frame_rows = true. The scenes from above "
-      "are run once more.\n"
-      "Examples:\n"
-      "  framesim report results.sqlite -o report.html\n"
-      "  framesim report results.sqlite -o report.html --view certified");
+      "Curves, levels and the scenes from above need the frames: frame_rows = true in the sweep's file.\n"
+      "Example:\n"
+      "  framesim report results.sqlite -o report.html");
   verb->callback([options, &session] { report(*options, session); });
 }
 

@@ -216,22 +216,6 @@ void run_one(const RunOptions& options, const Session& session) {
   fmt::print(stderr, "took {:.2f} s, {:.0f} frames/s\n", took_s, static_cast<double>(result.records.size()) / took_s);
 }
 
-// --seeds N: 1 to kMostSeeds, none of them past the largest seed.
-std::int64_t read_seeds(const std::string& text, std::uint64_t first) {
-  const QuantityResult count = parse_number(text);
-  const bool whole =
-      count.value && *count.value >= 1 && *count.value <= kMostSeeds && *count.value == std::floor(*count.value);
-  if (!whole) {
-    throw InputError(kCommandLine,
-                     fmt::format("--seeds: '{}' is not a number of seeds; allowed: 1 to {}", text, kMostSeeds));
-  }
-  const auto seeds = static_cast<std::int64_t>(*count.value);
-  if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(seeds - 1)) {
-    throw InputError(kCommandLine, fmt::format("--seeds: {} seeds from {} pass the largest one", seeds, first));
-  }
-  return seeds;
-}
-
 void refuse_with_seeds(const RunOptions& options) {
   const std::pair<const char*, bool> for_one[] = {{"--frames-out", !options.frames_out.empty()},
                                                   {"--plot", !options.plot_folder.empty()},
@@ -245,7 +229,7 @@ void run_many(const RunOptions& options, const Session& session) {
   refuse_with_seeds(options);
   RunSpec spec = read_spec(options);
   spec.engine.critical_path = false;  // nothing of it is shown, and eight seeds at a time do not trace it
-  const std::int64_t seeds = read_seeds(options.seeds, spec.seed);
+  const std::int64_t seeds = read_seed_count(options.seeds, spec.seed);
   if (!options.seeds_out.empty()) check_writable(options.seeds_out);
   const Scene scene = load_scene(spec.scene);
   if (spec.target_s == 0) spec.target_s = scene.targets_s.front();

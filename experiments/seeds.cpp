@@ -1,8 +1,13 @@
 #include "experiments/seeds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "experiments/run_parts.h"
+#include "sim/quantity.h"
 #include "sim/replications.h"
 
 namespace framesim {
@@ -78,6 +83,21 @@ class SeedRunner {
 };
 
 }  // namespace
+
+std::int64_t read_seed_count(const std::string& text, std::uint64_t first) {
+  const QuantityResult count = parse_number(text);
+  const bool whole =
+      count.value && *count.value >= 1 && *count.value <= kMostSeeds && *count.value == std::floor(*count.value);
+  if (!whole) {
+    throw InputError({"command line"},
+                     fmt::format("--seeds: '{}' is not a number of seeds; allowed: 1 to {}", text, kMostSeeds));
+  }
+  const auto seeds = static_cast<std::int64_t>(*count.value);
+  if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(seeds - 1)) {
+    throw InputError({"command line"}, fmt::format("--seeds: {} seeds from {} pass the largest one", seeds, first));
+  }
+  return seeds;
+}
 
 SeedRuns run_seeds(const RunSpec& spec, const Scene& scene, std::int64_t count, const std::function<void()>& on_frame,
                    const std::function<void(std::uint64_t, std::span<const FrameRecord>)>& on_seed) {

@@ -14,6 +14,9 @@ namespace framesim {
 
 inline constexpr std::int64_t kMostSeeds = 1'000'000;
 
+// --seeds N as a number from 1 to kMostSeeds, none of the seeds first .. first + N - 1 past the largest one. Throws InputError.
+std::int64_t read_seed_count(const std::string& text, std::uint64_t first);
+
 struct SeedRuns {
   RunResult parts;                      // names of the parts, of the first seed; no records
   std::optional<std::string> obstacle;  // why each seed was simulated on its own; nothing if they shared their frames

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 
 #include "experiments/options.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct SweepOptions {
   std::string file, store, shard = "0/1";
+  std::vector<std::string> plugins;
   bool resume = false;
   int jobs = default_jobs();
 };
@@ -26,11 +28,16 @@ void sweep(const SweepOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   const Shard shard = parse_shard(options.shard);
   check_writable(options.store);
-  const Sweep plan = read_sweep(options.file);
+  Sweep plan = read_sweep(options.file);
+  std::string command = "framesim sweep " + options.file;
+  for (const std::string& plugin : options.plugins) {
+    add_input_files("plug-in " + std::filesystem::path(plugin).filename().string(), plugin, plan.inputs);
+    command += " --plugin " + plugin;
+  }
   SweepOutcome outcome;
   {
-    Store store = Store::begin(options.store, identity_of(plan, shard),
-                               this_program("framesim sweep " + options.file), options.resume);
+    Store store =
+        Store::begin(options.store, identity_of(plan, shard), this_program(std::move(command)), options.resume);
     outcome = run_sweep(plan, shard, store, options.jobs, session.quiet);
   }
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -54,27 +61,35 @@ void add_sweep(CLI::App& app, Session& session) {
   verb->add_option("--store", options->store, "SQLite file for the results")->type_name("FILE")->required();
   verb->add_flag("--resume", options->resume,
                  "Go on with a store that is there: run what is missing. Without it, a store with content is refused");
-  verb->add_option("--shard", options->shard,
-                   "i/n: only the runs whose number leaves remainder i when divided by n. i from 0 to n; n stands for 0, so "
-                   "that job arrays may count from 0 or from 1. Each shard has a store of its own; see 'framesim merge'")
+  verb->add_option(
+          "--shard", options->shard,
+          "i/n: only the runs whose number leaves remainder i when divided by n. i from 0 to n; n stands for 0, so "
+          "that job arrays may count from 0 or from 1. Each shard has a store of its own; see 'framesim merge'")
       ->type_name("i/n")
       ->capture_default_str();
   add_plugin_option(*verb);
   add_jobs_option(*verb, options->jobs);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
-      "SPEC has framesim = 1 and the lists scenes and policies; it may have the lists targets (or [\"all\"]), estimators,\n"
-      "planners, overlaps, effects, no_effects, and machine, seeds (how many), first_seed, frames, fidelity, yardstick\n"
-      "(none, bound, least, parts; least and parts make ideal runs for each run), frame_rows (true: keep every frame), and\n"
+      "SPEC has framesim = 1 and the lists scenes and policies; it may have the lists targets (or [\"all\"]), "
+      "estimators,\n"
+      "planners, overlaps, effects, no_effects, and machine, seeds (how many), first_seed, frames, fidelity, "
+      "yardstick\n"
+      "(none, bound, least, parts; least and parts make ideal runs for each run), frame_rows (true: keep every frame), "
+      "and\n"
       "tables [[vary]] with of (scene, policy, estimator, planner, effect), name, key, values: a run for each value.\n"
-      "Each run is one transaction: kill the program at any point, and --resume gives what an undisturbed sweep gives.\n"
+      "Each run is one transaction: kill the program at any point, and --resume gives what an undisturbed sweep "
+      "gives.\n"
       "Examples:\n"
       "  framesim sweep sweep.toml --store results.sqlite --jobs 4\n"
       "  framesim sweep sweep.toml --store results.sqlite --resume\n"
       "  framesim sweep sweep.toml --store part-$SLURM_ARRAY_TASK_ID.sqlite --resume \\\n"
       "    --shard $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT\n"
       "  framesim query results.sqlite");
-  verb->callback([options, &session] { sweep(*options, session); });
+  verb->callback([options, verb, &session] {
+    options->plugins = verb->get_option("--plugin")->results();
+    sweep(*options, session);
+  });
 }
 
 }  // namespace framesim

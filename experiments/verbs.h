@@ -10,7 +10,7 @@ namespace framesim {
 // What verbs share with main.
 struct Session {
   bool quiet = false;  // no progress, no remarks on stderr
-  int exit_code = 0;   // 1 if `check` found a difference
+  int exit_code = 0;   // 1 if `check` found a difference, or `compare` a regression
 };
 
 void add_list(CLI::App& app, Session& session);

@@ -45,8 +45,8 @@ std::vector<Part> examine_all(const std::vector<std::string>& paths) {
     const auto show = [](const Manifest& m) {
       return fmt::format("framesim {}, commit {}, {}, {}", m.version, m.commit, m.compiler, m.flags);
     };
-    throw InputError({path}, fmt::format("was made by {}, but {} by {}", show(part.manifest), framesim::quoted(first.path),
-                                         show(first.manifest)));
+    throw InputError({path}, fmt::format("was made by {}, but {} by {}", show(part.manifest),
+                                         framesim::quoted(first.path), show(first.manifest)));
   }
   return parts;
 }
@@ -69,9 +69,10 @@ class Merger {
     attach.run();
     {
       Transaction all(out_);
-      out_.run("INSERT INTO manifest (version, commit_id, compiler, flags, cpu, command) "
-               "SELECT version, commit_id, compiler, flags, cpu, command FROM part.manifest p WHERE NOT EXISTS "
-               "(SELECT 1 FROM main.manifest m WHERE m.cpu = p.cpu) ORDER BY p.id");
+      out_.run(
+          "INSERT INTO manifest (version, commit_id, compiler, flags, cpu, command) "
+          "SELECT version, commit_id, compiler, flags, cpu, command FROM part.manifest p WHERE NOT EXISTS "
+          "(SELECT 1 FROM main.manifest m WHERE m.cpu = p.cpu) ORDER BY p.id");
       refuse_conflicts(path);
       out_.run(fmt::format("INSERT INTO main.run SELECT {} FROM part.run r WHERE id NOT IN (SELECT id FROM main.run)",
                            run_values()));
@@ -104,9 +105,10 @@ class Merger {
                     "EXCEPT SELECT {0} FROM main.run) ORDER BY id LIMIT 1",
                     names));
     if (!conflict.step()) return;
-    throw InputError({path}, fmt::format("run {} (scene {}, policy {}) has other results here than in a store before it; "
-                                         "equal sweeps give equal runs, so one of the two is not what it says",
-                                         conflict.whole(0), conflict.text(1), conflict.text(2)));
+    throw InputError({path},
+                     fmt::format("run {} (scene {}, policy {}) has other results here than in a store before it; "
+                                 "equal sweeps give equal runs, so one of the two is not what it says",
+                                 conflict.whole(0), conflict.text(1), conflict.text(2)));
   }
 
   Database& out_;
@@ -119,8 +121,8 @@ std::string what_is_missing(const Database& out, const std::vector<Part>& parts)
   const std::int64_t count = sweep.shard.count;
   for (std::int64_t index = 0; index < count; ++index) {
     const Shard shard{index, count};
-    const std::int64_t there =
-        out.whole(fmt::format("SELECT count(*) FROM run WHERE id % {} = {}", count, index)), due = shard.runs_of(sweep.runs);
+    const std::int64_t there = out.whole(fmt::format("SELECT count(*) FROM run WHERE id % {} = {}", count, index)),
+                       due = shard.runs_of(sweep.runs);
     if (there == due) continue;
     std::string file = "no file given";
     for (const Part& part : parts) {

@@ -36,7 +36,7 @@ CREATE TABLE manifest (
 CREATE TABLE about (name TEXT PRIMARY KEY, meaning TEXT NOT NULL) STRICT, WITHOUT ROWID;
 )";
 
-constexpr std::string_view kRunTexts[] = {"scene",   "title",     "policy",  "machine",  "overlap",
+constexpr std::string_view kRunTexts[] = {"scene",   "title",     "policy",  "machine", "overlap",
                                           "planner", "estimator", "effects", "left_out"};
 
 std::string sql_text(std::string_view text) {
@@ -64,7 +64,8 @@ std::string marks(std::size_t count) {
 }
 
 std::string run_table() {
-  std::string sql = "CREATE TABLE run (\n  id INTEGER PRIMARY KEY,\n  manifest INTEGER NOT NULL REFERENCES manifest (id)";
+  std::string sql =
+      "CREATE TABLE run (\n  id INTEGER PRIMARY KEY,\n  manifest INTEGER NOT NULL REFERENCES manifest (id)";
   for (const std::string_view text : kRunTexts) sql += fmt::format(",\n  {} TEXT NOT NULL", text);
   sql += ",\n  target_s REAL NOT NULL,\n  seed INTEGER NOT NULL";
   for (const SummaryColumn& column : summary_columns()) sql += fmt::format(",\n  {} REAL", column.name);
@@ -84,19 +85,23 @@ std::string frame_table() {
 }
 
 std::string views() {
-  std::string sql = "CREATE VIEW error_table AS SELECT scene, policy, target_s" + summary_names() +
-                    ", hash FROM run ORDER BY id;\n";
-  sql += fmt::format("CREATE VIEW runs AS SELECT id, scene, policy, target_s, machine, overlap, planner, estimator, "
-                     "effects, seed{}, p95_s <= {} * target_s AS holds, hash FROM run ORDER BY id;\n",
-                     summary_names(), kHoldTolerance);
-  sql += "CREATE VIEW frames AS SELECT r.scene, r.policy, r.target_s, r.seed, f.* FROM frame f JOIN run r ON r.id = f.run "
-         "ORDER BY f.run, f.frame;\n";
-  sql += "CREATE VIEW manifests AS SELECT m.*, count(r.id) AS runs FROM manifest m LEFT JOIN run r ON r.manifest = m.id "
-         "GROUP BY m.id ORDER BY m.id;\n";
+  std::string sql =
+      "CREATE VIEW error_table AS SELECT scene, policy, target_s" + summary_names() + ", hash FROM run ORDER BY id;\n";
+  sql += fmt::format(
+      "CREATE VIEW runs AS SELECT id, scene, policy, target_s, machine, overlap, planner, estimator, "
+      "effects, seed{}, p95_s <= {} * target_s AS holds, hash FROM run ORDER BY id;\n",
+      summary_names(), kHoldTolerance);
+  sql +=
+      "CREATE VIEW frames AS SELECT r.scene, r.policy, r.target_s, r.seed, f.* FROM frame f JOIN run r ON r.id = f.run "
+      "ORDER BY f.run, f.frame;\n";
+  sql +=
+      "CREATE VIEW manifests AS SELECT m.*, count(r.id) AS runs FROM manifest m LEFT JOIN run r ON r.manifest = m.id "
+      "GROUP BY m.id ORDER BY m.id;\n";
   sql += "CREATE VIEW inputs AS SELECT name, sha256 FROM input ORDER BY name;\n";
-  sql += "CREATE VIEW progress AS SELECT runs AS of_sweep, shard_index, shard_count, "
-         "(runs - shard_index + shard_count - 1) / shard_count AS of_shard, (SELECT count(*) FROM run) AS done "
-         "FROM sweep;\n";
+  sql +=
+      "CREATE VIEW progress AS SELECT runs AS of_sweep, shard_index, shard_count, "
+      "(runs - shard_index + shard_count - 1) / shard_count AS of_shard, (SELECT count(*) FROM run) AS done "
+      "FROM sweep;\n";
   return sql;
 }
 
@@ -122,10 +127,12 @@ std::string documentation() {
 
 const std::vector<StoreView>& store_views() {
   static const std::vector<StoreView> views = {
-      {"error_table", "the ordinary error table: what 'framesim compare --format csv' prints, in the order of the sweep"},
+      {"error_table",
+       "the ordinary error table: what 'framesim compare --format csv' prints, in the order of the sweep"},
       {"runs", "one row a run: what was run, with its seed, machine, planner, estimator and effects, and its figures"},
-      {"frames", "one row a frame, if the sweep kept frame rows; its run's scene, policy, target and seed before it. The "
-                 "critical path is not traced in a sweep: its columns are 0"},
+      {"frames",
+       "one row a frame, if the sweep kept frame rows; its run's scene, policy, target and seed before it. The "
+       "critical path is not traced in a sweep: its columns are 0"},
       {"manifests", "the programs and CPUs that made the runs, and how many each"},
       {"inputs", "every file that went in, with its SHA-256"},
       {"progress", "how many runs the sweep and this shard have, and how many are done"},
@@ -144,12 +151,6 @@ std::string run_insert_sql() {
 }
 
 std::string run_select_sql() { return fmt::format("SELECT {} FROM run ORDER BY id", run_names()); }
-
-std::string frame_select_sql() {
-  std::string names;
-  for (const FrameColumn& column : frame_columns()) names += fmt::format("{}{}", names.empty() ? "" : ", ", column.name);
-  return fmt::format("SELECT {} FROM frame WHERE run = ? ORDER BY frame", names);
-}
 
 std::string frame_insert_sql() {
   return fmt::format("INSERT INTO frame VALUES ({})", marks(1 + frame_columns().size()));

@@ -20,7 +20,6 @@ const std::vector<StoreView>& store_views();
 std::string run_insert_sql();
 std::string run_select_sql();
 // Columns of `frame` after `run`, in the order of FrameRecord.
-std::string frame_select_sql();  // of one run, in the order of the columns
 std::string frame_insert_sql();
 
 }  // namespace framesim

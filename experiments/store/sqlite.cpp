@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <cmath>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "sim/check.h"
@@ -20,6 +21,7 @@ std::string reason(int code, const char* message) {
     case SQLITE_NOTADB:
       return "is not an SQLite database; name another file";
     case SQLITE_FULL:
+      return "cannot be written: the disk is full";
     case SQLITE_IOERR:
       return fmt::format("cannot be written, or not read back: {}; is the disk full?", message);
     case SQLITE_CORRUPT:
@@ -35,6 +37,15 @@ std::string reason(int code, const char* message) {
 
 [[noreturn]] void fail_with(const std::string& path, int code, sqlite3* database) {
   throw InputError({path}, reason(code, database ? sqlite3_errmsg(database) : sqlite3_errstr(code)));
+}
+
+// SQLite takes a file of fewer bytes than its header for an empty database, and would write over what is in it.
+bool is_foreign(const std::string& path) {
+  constexpr std::string_view kHeader("SQLite format 3\0", 16);
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, 16> head{};
+  in.read(head.data(), head.size());
+  return !kHeader.starts_with(std::string_view(head.data(), static_cast<std::size_t>(in.gcount())));
 }
 
 }  // namespace
@@ -117,6 +128,7 @@ Database::Database(const std::string& path, Open how) : path_(path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw InputError({path}, "is a folder, not a store");
   if (how != Open::create && !std::filesystem::exists(path, ignored)) throw InputError({path}, "there is no such file");
+  if (is_foreign(path)) throw InputError({path}, reason(SQLITE_NOTADB, ""));
   // Reading too, as only who may write takes SQLite's helper files away again at the end. A file that may not be written is
   // opened for reading by itself.
   open(path, SQLITE_OPEN_READWRITE | (how == Open::create ? SQLITE_OPEN_CREATE : 0));

@@ -34,7 +34,8 @@ bool is_empty(const Database& database) {
 
 Yardstick yardstick_named(const Database& database, const std::string& name) {
   const auto at = std::find(kYardstickNames.begin(), kYardstickNames.end(), name);
-  if (at == kYardstickNames.end()) throw InputError({database.path()}, fmt::format("unknown yardstick {}", framesim::quoted(name)));
+  if (at == kYardstickNames.end())
+    throw InputError({database.path()}, fmt::format("unknown yardstick {}", framesim::quoted(name)));
   return static_cast<Yardstick>(at - kYardstickNames.begin());
 }
 
@@ -47,6 +48,9 @@ std::uint64_t read_hash(const std::string& text) {
   std::from_chars(text.data(), text.data() + text.size(), hash, 16);
   return hash;
 }
+
+void read_cell(const Statement& row, int column, std::int64_t& value) { value = row.whole(column); }
+void read_cell(const Statement& row, int column, double& value) { value = row.number(column); }
 
 void read_inputs(const Database& database, StoreIdentity& identity) {
   Statement rows = database.prepare("SELECT name, sha256 FROM input ORDER BY name");
@@ -62,9 +66,9 @@ void check_is_store(const Database& database) {
     throw InputError({database.path()}, "is an SQLite database of another program, not a store; name another file");
   }
   if (version == kStoreVersion) return;
-  throw InputError({database.path()},
-                   fmt::format("its tables have version {}; this framesim reads and writes version {}", version,
-                               kStoreVersion));
+  throw InputError(
+      {database.path()},
+      fmt::format("its tables have version {}; this framesim reads and writes version {}", version, kStoreVersion));
 }
 
 StoreIdentity identity_of(const Sweep& sweep, const Shard& shard) {
@@ -83,10 +87,11 @@ std::optional<std::string> why_different(const StoreIdentity& store, const Store
   for (const InputFile& input : other.inputs) {
     const auto same = std::find_if(store.inputs.begin(), store.inputs.end(),
                                    [&](const InputFile& mine) { return mine.name == input.name; });
-    if (same == store.inputs.end()) return fmt::format("it was made without the input {}", framesim::quoted(input.name));
+    if (same == store.inputs.end())
+      return fmt::format("it was made without the input {}", framesim::quoted(input.name));
     if (!(*same == input)) {
-      return fmt::format("the input {} is not the one it was made with (sha256 {}..., then {}...)", framesim::quoted(input.name),
-                         input.sha256.substr(0, 12), same->sha256.substr(0, 12));
+      return fmt::format("the input {} is not the one it was made with (sha256 {}..., then {}...)",
+                         framesim::quoted(input.name), input.sha256.substr(0, 12), same->sha256.substr(0, 12));
     }
   }
   if (store.inputs.size() != other.inputs.size()) return "it was made with more input files";
@@ -161,7 +166,8 @@ std::int64_t Store::manifest_id(const Manifest& manifest) {
   }
   Transaction all(database_);
   Statement row = database_.prepare(
-      "INSERT INTO manifest (version, commit_id, compiler, flags, cpu, command) VALUES (?, ?, ?, ?, ?, ?) RETURNING id");
+      "INSERT INTO manifest (version, commit_id, compiler, flags, cpu, command) VALUES (?, ?, ?, ?, ?, ?) RETURNING "
+      "id");
   const std::string* texts[] = {&manifest.version, &manifest.commit, &manifest.compiler,
                                 &manifest.flags,   &manifest.cpu,    &manifest.command};
   for (int i = 0; i < 6; ++i) row.bind(i + 1, *texts[i]);
@@ -190,8 +196,8 @@ std::vector<std::pair<std::int64_t, Manifest>> Store::manifests() const {
   Statement rows =
       database_.prepare("SELECT id, version, commit_id, compiler, flags, cpu, command FROM manifest ORDER BY id");
   while (rows.step()) {
-    list.push_back({rows.whole(0),
-                    {rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.text(5), rows.text(6)}});
+    list.push_back(
+        {rows.whole(0), {rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.text(5), rows.text(6)}});
   }
   return list;
 }
@@ -225,24 +231,13 @@ std::vector<StoredRun> Store::runs() const {
   return list;
 }
 
-bool Store::has_frames(std::int64_t run) const {
-  return database_.whole(fmt::format("SELECT count(*) FROM frame WHERE run = {}", run)) > 0;
-}
-
-namespace {
-
-void read_cell(const Statement& row, int at, std::int64_t& value) { value = row.whole(at); }
-void read_cell(const Statement& row, int at, double& value) { value = row.number(at); }
-
-}  // namespace
-
-std::vector<FrameRecord> Store::frames(std::int64_t run) const {
+std::vector<FrameRecord> Store::records(std::int64_t run) const {
   std::vector<FrameRecord> list;
-  Statement rows = database_.prepare(frame_select_sql());
+  Statement rows = database_.prepare("SELECT * FROM frame WHERE run = ? ORDER BY frame");
   rows.bind(1, run);
   while (rows.step()) {
     FrameRecord& record = list.emplace_back();
-    int at = 0;
+    int at = 1;  // behind the run's number
 #define X(type, name, unit, meaning) read_cell(rows, at++, record.name);
     FRAMESIM_FRAME_COLUMNS(X)
 #undef X

@@ -49,8 +49,8 @@ class Store {
   std::vector<std::pair<std::int64_t, Manifest>> manifests() const;
   std::vector<std::int64_t> run_ids() const;  // ascending
   std::vector<StoredRun> runs() const;        // by id
-  bool has_frames(std::int64_t run) const;
-  std::vector<FrameRecord> frames(std::int64_t run) const;  // in order; empty if the sweep kept none
+  // The frames of a run, in order; none if the sweep did not keep them.
+  std::vector<FrameRecord> records(std::int64_t run) const;
 
   // One transaction. A run that is there already stays: equal sweeps give equal runs.
   void add(std::int64_t id, const RunResult& result);

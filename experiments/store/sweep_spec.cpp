@@ -18,9 +18,9 @@
 namespace framesim {
 namespace {
 
-constexpr std::string_view kKeys[] = {"framesim", "scenes",     "policies",   "targets", "estimators", "planners",
-                                      "overlaps", "machine",    "effects",    "no_effects", "seeds",   "first_seed",
-                                      "frames",   "fidelity",   "yardstick",  "frame_rows", "vary"};
+constexpr std::string_view kKeys[] = {"framesim", "scenes",   "policies",  "targets",    "estimators", "planners",
+                                      "overlaps", "machine",  "effects",   "no_effects", "seeds",      "first_seed",
+                                      "frames",   "fidelity", "yardstick", "frame_rows", "vary"};
 constexpr std::array<std::string_view, 5> kVaried = {"scene", "policy", "estimator", "planner", "effect"};
 enum Varied : std::size_t { kScene, kPolicy, kEstimator, kPlanner, kEffect };
 
@@ -131,8 +131,7 @@ void apply_vary(const TableReader& root, Lists& lists) {
     const std::size_t of = table.word("of", kVaried);
     const std::string name = table.text("name");
     const std::vector<Setting> values = vary_values(table);
-    const bool found =
-        of == kEffect ? vary_effects(lists.effects, name, values) : vary(lists.specs[of], name, values);
+    const bool found = of == kEffect ? vary_effects(lists.effects, name, values) : vary(lists.specs[of], name, values);
     if (!found) {
       table.refuse("name", fmt::format("there is no {} {} in this file to vary", kVaried[of], framesim::quoted(name)));
     }
@@ -199,8 +198,8 @@ RunSpec read_common(const TableReader& root, Sweep& sweep) {
   spec.no_effects = specs(root, "no_effects");
   spec.frames = root.whole("frames", 1, kMostFrames, 0);
   spec.engine.kind = static_cast<EngineKind>(root.word("fidelity", kEngineKindNames, 0));
-  sweep.yardstick = static_cast<Yardstick>(
-      root.word("yardstick", kYardstickNames, static_cast<std::size_t>(Yardstick::bound)));
+  sweep.yardstick =
+      static_cast<Yardstick>(root.word("yardstick", kYardstickNames, static_cast<std::size_t>(Yardstick::bound)));
   sweep.frame_rows = root.flag("frame_rows", false);
   spec.bound = sweep.yardstick >= Yardstick::bound;
   if (!root.has("machine")) return spec;
@@ -246,7 +245,8 @@ Lists read_lists(const TableReader& root) {
   lists.specs[kPlanner] = specs(root, "planners");
   lists.effects = {specs(root, "effects")};
   for (const char* needed : {"scenes", "policies"}) {
-    if (!root.has(needed)) throw InputError(root.where(), fmt::format("the key '{}' is missing; allowed: a list of names", needed));
+    if (!root.has(needed))
+      throw InputError(root.where(), fmt::format("the key '{}' is missing; allowed: a list of names", needed));
   }
   if (lists.specs[kEstimator].empty()) {
     lists.specs[kEstimator].push_back({std::string(kDefaultEstimator), {}, root.where()});
@@ -333,14 +333,15 @@ Shard parse_shard(const std::string& text) {
   bool good = first == std::errc() && slash != end && *slash == '/';
   if (good) {
     const auto [last, second] = std::from_chars(slash + 1, end, shard.count);
-    good = second == std::errc() && last == end && shard.count >= 1 && shard.count <= kMostShards &&
-           shard.index >= 0 && shard.index <= shard.count;
+    good = second == std::errc() && last == end && shard.count >= 1 && shard.count <= kMostShards && shard.index >= 0 &&
+           shard.index <= shard.count;
   }
   if (!good) {
-    throw InputError({"command line"},
-                     fmt::format("--shard: {} is not i/n with n from 1 to {} and i from 0 to n (n stands for 0, so that "
-                                 "job arrays may count from 0 or from 1)",
-                                 framesim::quoted(text), kMostShards));
+    throw InputError(
+        {"command line"},
+        fmt::format("--shard: {} is not i/n with n from 1 to {} and i from 0 to n (n stands for 0, so that "
+                    "job arrays may count from 0 or from 1)",
+                    framesim::quoted(text), kMostShards));
   }
   shard.index %= shard.count;
   return shard;

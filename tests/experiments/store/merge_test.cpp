@@ -10,8 +10,8 @@ namespace {
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 void make(const TestFolder& folder, const std::string& store, const std::string& shard) {
-  const ProgramRun run = run_program(
-      {"sweep", folder.path("sweep.toml"), "--store", folder.path(store), "--shard", shard, "--quiet"});
+  const ProgramRun run =
+      run_program({"sweep", folder.path("sweep.toml"), "--store", folder.path(store), "--shard", shard, "--quiet"});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
 }

@@ -26,8 +26,8 @@ TEST_CASE("report: the frames that a store gives back have the hash of those tha
   REQUIRE(store.runs().size() == 12);
   for (const StoredRun& run : store.runs()) {
     CAPTURE(run.id);
-    CHECK(store.frames(run.id).size() == 20);
-    CHECK(hash(store.frames(run.id)) == run.result.records_hash);
+    CHECK(store.records(run.id).size() == 20);
+    CHECK(hash(store.records(run.id)) == run.result.records_hash);
   }
 }
 

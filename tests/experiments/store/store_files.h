@@ -33,7 +33,8 @@ inline std::string content_of_store(const std::string& path) {
     Statement rows = database.prepare("SELECT * FROM " + tables.text(0) + " ORDER BY 1, 2");
     while (rows.step()) {
       for (int i = 0; i < rows.columns(); ++i) {
-        content += rows.is_null(i) || rows.is_text(i) || rows.is_whole(i) ? rows.text(i) : fmt::format("{:a}", rows.number(i));
+        content +=
+            rows.is_null(i) || rows.is_text(i) || rows.is_whole(i) ? rows.text(i) : fmt::format("{:a}", rows.number(i));
         content += '|';
       }
       content += '\n';

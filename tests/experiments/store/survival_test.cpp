@@ -170,6 +170,9 @@ TEST_CASE("sweep: locked, foreign and impossible files are refused and left as t
   folder.write("text.sqlite", std::string(4096, 'x'));
   refused("text.sqlite", 3, "is not an SQLite database");
   CHECK(folder.read("text.sqlite") == std::string(4096, 'x'));
+  folder.write("short.txt", "my notes");  // which SQLite would take for an empty database
+  refused("short.txt", 3, "is not an SQLite database");
+  CHECK(folder.read("short.txt") == "my notes");
   Database(folder.path("foreign.sqlite"), Database::Open::create).run("CREATE TABLE song (title TEXT)");
   const std::string foreign = folder.read("foreign.sqlite");
   refused("foreign.sqlite", 3, "another program");

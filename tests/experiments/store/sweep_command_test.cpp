@@ -1,6 +1,7 @@
 // framesim sweep and query through the binary.
 #include <fmt/format.h>
 
+#include "experiments/store/store.h"
 #include "tests/experiments/store/store_files.h"
 
 namespace framesim {
@@ -54,6 +55,21 @@ TEST_CASE("sweep: the store's error table is compare's, byte for byte") {
   CHECK(view.out == query(folder, "s.sqlite", {"error_table", "--format", "csv"}).out);
 }
 
+TEST_CASE("sweep: each yardstick gives what compare gives with it") {
+  for (const char* yardstick : {"none", "least", "parts"}) {
+    CAPTURE(yardstick);
+    const TestFolder folder;
+    folder.write("sweep.toml", fmt::format("framesim = 1\nscenes = [\"street\"]\npolicies = [\"robin-hood\", "
+                                           "\"static\"]\nframes = 10\nyardstick = \"{}\"\n",
+                                           yardstick));
+    REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+    CHECK(query(folder, "s.sqlite", {"--format", "csv"}).out ==
+          run_program({"compare", "--scenes", "street", "--policies", "robin-hood,static", "--frames", "10",
+                       "--yardstick", yardstick, "--format", "csv", "--quiet"})
+              .out);
+  }
+}
+
 TEST_CASE("sweep: the content does not depend on the number of jobs") {
   const TestFolder folder;
   folder.write("sweep.toml", kSmallSweep);
@@ -65,21 +81,57 @@ TEST_CASE("sweep: the content does not depend on the number of jobs") {
   CHECK(folder.names() == std::vector<std::string>{"1.sqlite", "5.sqlite", "sweep.toml"});
 }
 
+TEST_CASE("sweep: the frames that a store keeps are those that the run had, bit for bit") {
+  const TestFolder folder;
+  folder.write("sweep.toml", kSmallSweep);
+  REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+  const Store store = Store::open(folder.path("s.sqlite"));
+  const std::vector<StoredRun> runs = store.runs();
+  REQUIRE(runs.size() == 12);
+  for (const StoredRun& run : runs) {
+    CAPTURE(run.id);
+    const std::vector<FrameRecord> records = store.records(run.id);
+    CHECK(records.size() == 20);
+    CHECK(hash(records) == run.result.records_hash);
+  }
+}
+
+TEST_CASE("report: a store as a page, with curves where it has frames") {
+  const TestFolder folder;
+  folder.write("sweep.toml", kSmallSweep);
+  REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
+  const ProgramRun made = run_program({"report", folder.path("s.sqlite"), "-o", folder.path("r.html")});
+  CAPTURE(made.err);
+  if (has(made.err, "without dygraphs")) return;  // then there is no report at all
+  REQUIRE(made.exit_code == 0);
+  CHECK(made.out == folder.path("r.html") + "\n");
+  const std::string page = folder.read("r.html");
+  for (const char* word : {"robin-hood", "\"views\":[{", "sha256 of sweep.toml", "g++", "compiler"}) {
+    CAPTURE(word);
+    if (std::string(word) == "g++" && has(page, "clang++")) continue;
+    CHECK(has(page, word));
+  }
+  // A damaged store gives no page.
+  folder.write("bad.sqlite", "x");
+  check_refused(run_program({"report", folder.path("bad.sqlite"), "-o", folder.path("b.html")}), 3, {"not an SQLite"});
+  CHECK_FALSE(std::filesystem::exists(folder.path("b.html")));
+}
+
 TEST_CASE("sweep: [[vary]] multiplies what it names and leaves the others") {
   const TestFolder folder;
-  folder.write("sweep.toml", std::string("framesim = 1\nscenes = [\"street\"]\npolicies = [\"pid\", \"static\"]\nframes = "
-                                         "5\neffects = [\"jitter:sigma=0.1\"]\n") +
-                                 "[[vary]]\nof = \"policy\"\nname = \"static\"\nkey = \"pixels-per-polygon\"\nvalues = "
-                                 "[16, 64, 256]\n[[vary]]\nof = \"effect\"\nname = \"jitter\"\nkey = \"sigma\"\nvalues = "
-                                 "[0.1, 0.2]\n");
+  folder.write("sweep.toml",
+               std::string("framesim = 1\nscenes = [\"street\"]\npolicies = [\"pid\", \"static\"]\nframes = "
+                           "5\neffects = [\"jitter:sigma=0.1\"]\n") +
+                   "[[vary]]\nof = \"policy\"\nname = \"static\"\nkey = \"pixels-per-polygon\"\nvalues = "
+                   "[16, 64, 256]\n[[vary]]\nof = \"effect\"\nname = \"jitter\"\nkey = \"sigma\"\nvalues = "
+                   "[0.1, 0.2]\n");
   REQUIRE(sweep(folder, "s.sqlite").exit_code == 0);
-  const ProgramRun rows =
-      query(folder, "s.sqlite", {"SELECT policy, effects FROM runs", "--format", "csv"});
+  const ProgramRun rows = query(folder, "s.sqlite", {"SELECT policy, effects FROM runs", "--format", "csv"});
   // Two effects lists, each with pid and three static.
   std::string expected = "policy,effects\n";
   for (const char* sigma : {"0.1", "0.2"}) {
-    for (const char* policy : {"pid", "static:pixels-per-polygon=16", "static:pixels-per-polygon=64",
-                               "static:pixels-per-polygon=256"}) {
+    for (const char* policy :
+         {"pid", "static:pixels-per-polygon=16", "static:pixels-per-polygon=64", "static:pixels-per-polygon=256"}) {
       expected += fmt::format("{},\"semantics, jitter:sigma={}\"\n", policy, sigma);
     }
   }
@@ -139,8 +191,10 @@ TEST_CASE("sweep: a store that another program made is not gone on with") {
   const TestFolder other;
   other.write("sweep.toml", kSmallSweep);
   REQUIRE(sweep(other, "s.sqlite").exit_code == 0);
-  Database(other.path("s.sqlite"), Database::Open::existing).run("UPDATE manifest SET cpu = 'Z80'; DELETE FROM frame "
-                                                                  "WHERE run = 7; DELETE FROM run WHERE id = 7");
+  Database(other.path("s.sqlite"), Database::Open::existing)
+      .run(
+          "UPDATE manifest SET cpu = 'Z80'; DELETE FROM frame "
+          "WHERE run = 7; DELETE FROM run WHERE id = 7");
   REQUIRE(sweep(other, "s.sqlite", {"--resume"}).exit_code == 0);
   CHECK(query(other, "s.sqlite", {"SELECT m.runs FROM manifests m", "--format", "csv"}).out == "runs\n11\n1\n");
 }
@@ -158,7 +212,8 @@ TEST_CASE("query: only reads, and says what it can show") {
   check_refused(query(folder, "sweep.toml"), 3, {"not an SQLite database"});
   check_refused(query(folder, ""), 3, {"folder"});
   CHECK(folder.read("s.sqlite") == before);
-  CHECK(query(folder, "s.sqlite", {"SELECT count(*) AS n, 'a,b' AS t, 1.5 AS x, NULL AS y FROM frames", "--format", "json"})
+  CHECK(query(folder, "s.sqlite",
+              {"SELECT count(*) AS n, 'a,b' AS t, 1.5 AS x, NULL AS y FROM frames", "--format", "json"})
             .out == "[\n  {\"n\": 240, \"t\": \"a,b\", \"x\": 1.5, \"y\": null}\n]\n");
   CHECK(query(folder, "s.sqlite", {"progress", "--format", "csv"}).out ==
         "of_sweep,shard_index,shard_count,of_shard,done\n12,0,1,12,12\n");
@@ -166,7 +221,8 @@ TEST_CASE("query: only reads, and says what it can show") {
 
 TEST_CASE("sweep: every file that goes in is in the store with its SHA-256") {
   const TestFolder folder;
-  folder.write("sweep.toml", "framesim = 1\nscenes = [\"street\"]\npolicies = [\"static\"]\nframes = 5\nmachine = \"m.toml\"\n");
+  folder.write("sweep.toml",
+               "framesim = 1\nscenes = [\"street\"]\npolicies = [\"static\"]\nframes = 5\nmachine = \"m.toml\"\n");
   std::ifstream in(std::string(kSourceFolder) + "/scenes/data/machines/street.toml");
   const std::string machine((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   folder.write("m.toml", machine);
