@@ -24,13 +24,6 @@ struct CompareOptions {
   std::string output, plot_folder;
 };
 
-TableFormat read_format(const std::string& text) {
-  for (std::size_t i = 0; i < std::size(kTableFormatNames); ++i) {
-    if (kTableFormatNames[i] == text) return static_cast<TableFormat>(i);
-  }
-  throw UsageError(fmt::format("--format: '{}' is unknown; allowed: {}", text, fmt::join(kTableFormatNames, ", ")));
-}
-
 // Whatever can be refused is refused before the first run.
 void prepare_outputs(const CompareOptions& options) {
   if (!options.output.empty()) check_writable(options.output);
@@ -52,7 +45,7 @@ void print_table(const CompareOptions& options, std::span<const RunResult> resul
 }
 
 void compare(const CompareOptions& options, const Session& session) {
-  const TableFormat format = read_format(options.format);
+  const TableFormat format = read_table_format(options.format);
   std::vector<Job> jobs = plan_comparison(options.comparison, {"command line"});
   const Yardstick yardstick = read_yardstick(options.comparison, {"command line"});
   prepare_outputs(options);
