@@ -56,11 +56,11 @@ struct Capture {
 inline constexpr double kLongestCapturedMs = 60'000;
 inline constexpr std::size_t kLargestCapture = std::size_t{1} << 28;  // bytes
 
-// Reads a capture from memory. Columns are found by name, whatever their order and case; those that are not needed may be
-// missing. Of several streams the one with most rows is taken, the earliest of equally long ones; `process`, if not empty, is
-// the application to take (case does not matter). Rows of other streams, generated frames (FrameType other than Application)
-// and implausible values are skipped and counted in Capture::skips. Throws InputError at `name`:line for a file that is no
-// capture, has no such process or leaves no frame.
+// Reads a capture from memory. Columns are found by name, whatever their order and case; those that are not needed may
+// be missing. Of several streams the one with most rows is taken, the earliest of equally long ones; `process`, if not
+// empty, is the application to take (case does not matter). Rows of other streams, generated frames (FrameType other
+// than Application) and implausible values are skipped and counted in Capture::skips. Throws InputError at `name`:line
+// for a file that is no capture, has no such process or leaves no frame.
 Capture read_capture(std::string_view text, const std::string& name, std::string_view process = {});
 
 // The same from a file of at most kLargestCapture bytes.

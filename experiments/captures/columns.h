@@ -22,8 +22,8 @@ struct CaptureHeader {
   std::string name_of(CaptureColumn column) const;  // empty if it is not there
 };
 
-// `comments`: lines beginning with `//` stood before it. Throws InputError at `where` if no column holds frame times or one is
-// there twice.
+// `comments`: lines beginning with `//` stood before it. Throws InputError at `where` if no column holds frame times
+// or one is there twice.
 CaptureHeader read_capture_header(std::vector<std::string> names, bool comments, const InputLocation& where);
 
 // ASCII letters in lower case: columns and applications are compared without regard to case.

@@ -47,7 +47,8 @@ double low_integral_ms(std::span<const double> sorted, double share);
 double low_average_ms(std::span<const double> sorted, double share);
 // Of the frames that begin within half of `window_ms` of each frame's own beginning the mean; the deviation from those.
 double adaptive_deviation_ms(std::span<const double> times_ms, double window_ms);
-// The lowest of the usual rates whose period divides the times: |mean of exp(2 pi i t rate)| >= 0.9, and at least 8 times.
+// The lowest of the usual rates whose period divides the times: |mean of exp(2 pi i t rate)| >= 0.9, and at least 8
+// times.
 std::optional<double> find_refresh_hz(std::span<const double> display_ms);
 
 }  // namespace framesim

@@ -1,7 +1,7 @@
 // How well each formula of CPU and GPU overlap explains measured frame times (MODEL section 2).
 //
-// Over windows of w frames, because a queue of frames shifts CPU and GPU times of one frame against each other: single frames
-// mislead. Of a window: c, g and T are the means of CPU work, GPU busy and frame time; a formula's error is
+// Over windows of w frames, because a queue of frames shifts CPU and GPU times of one frame against each other: single
+// frames mislead. Of a window: c, g and T are the means of CPU work, GPU busy and frame time; a formula's error is
 // |formula(c, g) - T| / T.
 #pragma once
 

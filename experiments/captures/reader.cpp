@@ -82,7 +82,8 @@ class CaptureReader {
     capture_.display_column = header_.name_of(CaptureColumn::display);
   }
 
-  // The cell of a column; empty if the file or this row does not have it (OCAT writes its last columns in one row only).
+  // The cell of a column; empty if the file or this row does not have it (OCAT writes its last columns in one row
+  // only).
   const std::string& cell(CaptureColumn column) const {
     static const std::string kEmpty;
     const int at = header_[column];

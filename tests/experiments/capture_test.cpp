@@ -127,9 +127,10 @@ TEST_CASE("a file that is no capture is refused with what is missing") {
 }
 
 TEST_CASE("low percentiles: the average and the integral of 1 % differ as derived by hand") {
-  // 300 frames: 296 of 10 ms, then 20, 30, 40, 50: in all 3100 ms. The slowest 1 % are 3 frames: (30+40+50)/3 = 40 ms. 1 % of the
-  // time is 31 ms, passed within the slowest frame already: 50 ms. 0.1 %: one frame, 50 ms; 3.1 ms: 50 ms. 3 % of the time is
-  // 93 ms: 50 + 40 = 90 is not more, with 30 it is: 30 ms. 5 %: 50+40+30+20 = 140 and one more make 150 of 155 ms: 10 ms.
+  // 300 frames: 296 of 10 ms, then 20, 30, 40, 50: in all 3100 ms. The slowest 1 % are 3 frames: (30+40+50)/3 = 40 ms.
+  // 1 % of the time is 31 ms, passed within the slowest frame already: 50 ms. 0.1 %: one frame, 50 ms; 3.1 ms: 50 ms.
+  // 3 % of the time is 93 ms: 50 + 40 = 90 is not more, with 30 it is: 30 ms. 5 %: 50+40+30+20 = 140 and one more make
+  // 150 of 155 ms: 10 ms.
   std::vector<double> sorted(296, 10.0);
   for (const double slow : {20, 30, 40, 50}) sorted.push_back(slow);
   CHECK(low_average_ms(sorted, 0.01) == 40);
@@ -161,8 +162,8 @@ TEST_CASE("stutter, dropped frames and missed blanks of a capture as derived by 
 }
 
 TEST_CASE("the adaptive deviation forgives a slow drift and not a jump back and forth") {
-  // Window 4 ms, frames of 2 and 4 ms in turn, beginning at 0, 2, 6, 8, 12: those within 2 ms of each are {2,4}, {2,4}, {2,4}, {2,4}
-  // and for the last {2} alone: residuals -1, 1, -1, 1, 0: sqrt(4 / 4).
+  // Window 4 ms, frames of 2 and 4 ms in turn, beginning at 0, 2, 6, 8, 12: those within 2 ms of each are {2,4},
+  // {2,4}, {2,4}, {2,4} and for the last {2} alone: residuals -1, 1, -1, 1, 0: sqrt(4 / 4).
   const double turns[] = {2, 4, 2, 4, 2};
   CHECK(adaptive_deviation_ms(turns, 4) == Approx(1));
   const double constant[] = {5, 5, 5};
@@ -185,8 +186,8 @@ TEST_CASE(
   // serial against T = 8.5, 9.5, 12, 16 ms: 10, 14, 18, 22 are off by 1.5/8.5, 4.5/9.5, 6/12, 6/16.
   CHECK(fits[0].errors[0].mean_error == Approx((1.5 / 8.5 + 4.5 / 9.5 + 0.5 + 0.375) / 4));
   CHECK(fits[0].errors[4].bias < 0);
-  // GPU times one frame late, frame time the larger of the means: c = 12, 4 in turn, g = 4, 12, T = 8 always. max over one frame
-  // gives 12, half too long; over windows of two c = g = 8 = T, exact.
+  // GPU times one frame late, frame time the larger of the means: c = 12, 4 in turn, g = 4, 12, T = 8 always. max over
+  // one frame gives 12, half too long; over windows of two c = g = 8 = T, exact.
   std::vector<CaptureFrame> shifted;
   for (int i = 0; i < 8; ++i) shifted.push_back(i % 2 == 0 ? busy(8, 12, 4) : busy(8, 4, 12));
   const long both[] = {1, 2, 16};

@@ -1,4 +1,5 @@
-// Real files that others wrote, which the project does not hold: tests read them where they are, and say so where they are not.
+// Real files that others wrote, which the project does not hold: tests read them where they are, and say so where they
+// are not.
 #pragma once
 
 #include <cstdio>
@@ -11,8 +12,8 @@
 
 namespace framesim {
 
-// The file or folder `name` below FRAMESIM_SHARED_DATA, or below ../shared/data of the sources. Nothing, and a line on stderr,
-// if it is not there.
+// The file or folder `name` below FRAMESIM_SHARED_DATA, or below ../shared/data of the sources. Nothing, and a line on
+// stderr, if it is not there.
 inline std::optional<std::string> shared_data(const std::string& name) {
   const char* folder = std::getenv("FRAMESIM_SHARED_DATA");
   const std::string path = (folder != nullptr ? folder : std::string(kSourceFolder) + "/../shared/data") + "/" + name;
