@@ -131,8 +131,15 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
 }
 
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
+  return run_watched(spec, scene, on_frame, {});
+}
+
+RunResult run_watched(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
+                      const EngineMaker& engine_maker) {
   const Parts parts = make_parts(spec, scene);
   RunResult result = describe(spec, scene, parts);
+  std::function<std::unique_ptr<Engine>()> maker;
+  if (engine_maker) maker = [&] { return engine_maker(parts.machine->profile(), spec.engine); };
   Simulation simulation({.scene = *parts.source,
                          .policy = *parts.policy,
                          .planner = *parts.planner,
@@ -144,7 +151,8 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
                          .engine = spec.engine,
                          .bound = spec.bound,
                          .check_selections = spec.verify,
-                         .profile = spec.profile ? &result.profile : nullptr});
+                         .profile = spec.profile ? &result.profile : nullptr,
+                         .make_engine = std::move(maker)});
   const std::int64_t frames = frames_to_run(spec, scene);
   result.records.reserve(static_cast<std::size_t>(frames));
   for (std::int64_t frame = 0; frame < frames; ++frame) {

@@ -95,6 +95,11 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene);
 // each frame, on the calling thread.
 RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame = {});
 
+// Makes the engine of a run in place of make_engine(): for those who watch it at work. It must give the same times.
+using EngineMaker = std::function<std::unique_ptr<Engine>(const MachineProfile& machine, const EngineOptions& options)>;
+RunResult run_watched(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
+                      const EngineMaker& engine_maker);
+
 // A run that holds its target: the 95th percentile of frame time is at most 1.10 times the target.
 inline constexpr double kHoldTolerance = 1.10;
 bool holds(const RunResult& result);

@@ -17,12 +17,14 @@ inline constexpr std::string_view kCaptureFamilyNames[] = {"PresentMon v1", "Pre
 
 // One present of the chosen swap chain. Times in milliseconds, as captures have them.
 struct CaptureFrame {
-  int line = 0;                  // in the file, from 1
-  double frame_ms = 0;           // > 0
-  std::optional<double> cpu_ms;  // CPU work: all between two presents that is not Present; holds waits outside of it
-  std::optional<double> gpu_ms;  // GPU busy: without what it idled
+  int line = 0;                    // in the file, from 1
+  double frame_ms = 0;             // > 0
+  std::optional<double> start_ms;  // from its CPU start to the next one's: what cpu_ms is a part of
+  std::optional<double> cpu_ms;    // CPU work: all between two presents that is not Present; holds waits outside of it
+  std::optional<double> gpu_ms;    // GPU busy: without what it idled
   std::optional<double> display_ms;  // from one change of the picture on the screen to the next
   bool dropped = false;              // never shown
+  bool tears = false;                // may be shown between two vertical blanks
 };
 
 // The presents of one application to one of its swap chains.

@@ -20,6 +20,9 @@ constexpr Alias kAliases[] = {{CaptureColumn::application, "application"},
                               {CaptureColumn::swap_chain, "swapchainaddress"},
                               {CaptureColumn::frame_type, "frametype"},
                               {CaptureColumn::dropped, "dropped"},
+                              {CaptureColumn::tearing, "allowstearing"},
+                              {CaptureColumn::start, "frametime"},
+                              {CaptureColumn::start, "msbetweenappstart"},
                               {CaptureColumn::frame, "frametime"},          // v2
                               {CaptureColumn::frame, "msbetweenpresents"},  // all others
                               {CaptureColumn::cpu, "cpubusy"},

@@ -10,8 +10,20 @@
 
 namespace framesim {
 
-enum class CaptureColumn { application, process, swap_chain, frame_type, dropped, frame, cpu, gpu, display };
-inline constexpr std::size_t kCaptureColumns = 9;
+enum class CaptureColumn {
+  application,
+  process,
+  swap_chain,
+  frame_type,
+  dropped,
+  tearing,
+  frame,
+  start,
+  cpu,
+  gpu,
+  display
+};
+inline constexpr std::size_t kCaptureColumns = 11;
 
 struct CaptureHeader {
   std::vector<std::string> names;         // as the file spells them

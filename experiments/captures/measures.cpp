@@ -13,7 +13,7 @@ constexpr double kStutterFactor = 2.5;     // CapFrameX's default
 constexpr double kAdaptiveWindowMs = 500;  // same
 constexpr double kUsualRatesHz[] = {24,  30,  48,  50,  60,  72,  75,  80,  85,  90,
                                     100, 120, 144, 165, 180, 200, 240, 280, 360, 480};
-constexpr double kCoherent = 0.9;
+constexpr double kCoherent = 0.95;
 constexpr std::size_t kFewestDisplayTimes = 8;
 
 double sum_of(std::span<const double> values) {
@@ -31,14 +31,16 @@ double share_of(std::span<const double> times, double longer_than, double total)
 }
 
 void measure_display(std::span<const CaptureFrame> frames, double refresh_hz, CaptureMeasures& m) {
-  std::vector<double> display_ms;
+  std::vector<double> display_ms, at_blanks_ms;
   for (const CaptureFrame& frame : frames) {
-    if (frame.display_ms && *frame.display_ms > 0) display_ms.push_back(*frame.display_ms);
+    if (!frame.display_ms || *frame.display_ms <= 0) continue;
+    display_ms.push_back(*frame.display_ms);
+    if (!frame.tears) at_blanks_ms.push_back(*frame.display_ms);
   }
   if (display_ms.empty()) return;
   const auto dropped = std::count_if(frames.begin(), frames.end(), [](const CaptureFrame& f) { return f.dropped; });
   m.dropped_share = 100 * static_cast<double>(dropped) / static_cast<double>(frames.size());
-  m.refresh = refresh_hz > 0 ? std::optional(refresh_hz) : find_refresh_hz(display_ms);
+  m.refresh = refresh_hz > 0 ? std::optional(refresh_hz) : find_refresh_hz(at_blanks_ms);
   if (!m.refresh) return;
   double missed = 0;
   for (const double time_ms : display_ms) missed += std::max(0.0, std::round(time_ms * *m.refresh / 1e3) - 1);

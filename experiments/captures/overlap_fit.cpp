@@ -29,7 +29,7 @@ std::vector<Window> windows_of(std::span<const CaptureFrame> frames, long size) 
     }
     cpu.add(*f.cpu_ms);
     gpu.add(*f.gpu_ms);
-    frame.add(f.frame_ms);
+    frame.add(f.start_ms.value_or(f.frame_ms));
     if (++count < size) continue;
     const auto n = static_cast<double>(size);
     windows.push_back({cpu.value() / n, gpu.value() / n, frame.value() / n});

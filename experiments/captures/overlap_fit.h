@@ -1,8 +1,8 @@
 // How well each formula of CPU and GPU overlap explains measured frame times (MODEL section 2).
 //
 // Over windows of w frames, because a queue of frames shifts CPU and GPU times of one frame against each other: single
-// frames mislead. Of a window: c, g and T are the means of CPU work, GPU busy and frame time; a formula's error is
-// |formula(c, g) - T| / T.
+// frames mislead. Of a window: c, g and T are the means of CPU work, GPU busy and frame time (from CPU start to CPU
+// start where the capture has it); a formula's error is |formula(c, g) - T| / T.
 #pragma once
 
 #include <span>

@@ -160,6 +160,8 @@ class CaptureReader {
     if (!time && skipped_cells() == skips_before) skip(capture_.frame_column + " is NA");
     if (!time) return;
     frame.frame_ms = *time;
+    frame.start_ms = time_ms(CaptureColumn::start, 1e-6);
+    frame.tears = cell(CaptureColumn::tearing) == "1";
     frame.cpu_ms = time_ms(CaptureColumn::cpu, 0);
     frame.gpu_ms = time_ms(CaptureColumn::gpu, 0);
     frame.display_ms = time_ms(CaptureColumn::display, 0);

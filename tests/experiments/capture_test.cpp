@@ -1,9 +1,13 @@
 // Captures: columns by name in every header family, streams, what is skipped; measures against numbers derived by hand.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "experiments/captures/report.h"
+#include "experiments/csv_row.h"
 #include "tests/experiments/program.h"
 #include "tests/experiments/shared_data.h"
 
@@ -233,6 +237,83 @@ TEST_CASE("import capture prints every measure with its definition in four forma
   CHECK(run_program({"import", "capture", path, "--process", "x"}).exit_code == 3);
   CHECK(run_program({"import", "capture", folder.path("none.csv")}).exit_code == 3);
   CHECK(run_program({"import"}).exit_code == 2);
+}
+
+TEST_CASE("frames-format writes captures that the importer reads back to the picosecond") {
+  const TestFolder folder;
+  const auto out = [&](const std::string& format, const std::string& name) {
+    const ProgramRun run =
+        run_program({"run", "street", "--policy", "funkhouser", "--overlap", "staged:2", "--effect", "jitter",
+                     "--frames", "25", "--frames-out", folder.path(name), "--frames-format", format});
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    return folder.read(name);
+  };
+  // framesim's own columns, by name, as whole picoseconds.
+  std::istringstream lines(out("framesim", "own.csv"));
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = split_csv_row(line);
+  std::vector<std::map<std::string, std::int64_t>> own;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> cells = split_csv_row(line);
+    auto& row = own.emplace_back();
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (names[i].ends_with("_ps")) row[names[i]] = std::stoll(cells[i]);
+  }
+  REQUIRE(own.size() == 25);
+  const auto ps = [](std::optional<double> ms) { return std::llround(ms.value() * 1e9); };
+
+  const Capture v2 = read_capture(out("presentmon-v2", "v2.csv"), "v2");
+  CHECK(v2.family == CaptureFamily::presentmon_v2);
+  CHECK(v2.skips.empty());
+  REQUIRE(v2.frames.size() == 24);  // the last has no next frame
+  for (std::size_t k = 0; k < 24; ++k) {
+    CHECK(ps(v2.frames[k].frame_ms) == own[k + 1]["cpu_start_ps"] - own[k]["cpu_start_ps"]);
+    CHECK(ps(v2.frames[k].cpu_ms) == own[k]["submitted_ps"] - own[k]["cpu_start_ps"]);
+    CHECK(ps(v2.frames[k].display_ms) == own[k + 1]["frame_time_ps"]);
+    CHECK(ps(v2.frames[k].gpu_ms) <= own[k]["draw_time_ps"]);  // which holds what the stages idled
+    CHECK(ps(v2.frames[k].gpu_ms) > 0);
+  }
+  const Capture v1 = read_capture(out("presentmon-v1", "v1.csv"), "v1");
+  const Capture current = read_capture(out("presentmon-current", "current.csv"), "current");
+  CHECK(v1.family == CaptureFamily::presentmon_v1);
+  CHECK(current.family == CaptureFamily::presentmon_current);
+  REQUIRE(v1.frames.size() == 23);  // the first has none before it
+  REQUIRE(current.frames.size() == 23);
+  for (std::size_t k = 0; k < 23; ++k) {
+    CHECK(ps(v1.frames[k].frame_ms) == own[k + 1]["submitted_ps"] - own[k]["submitted_ps"]);
+    CHECK(ps(v1.frames[k].display_ms) == own[k + 1]["frame_time_ps"]);
+    CHECK(v1.frames[k].gpu_ms == v2.frames[k + 1].gpu_ms);
+    CHECK(current.frames[k].frame_ms == v1.frames[k].frame_ms);
+    CHECK(current.frames[k].start_ms == v2.frames[k + 1].frame_ms);
+    CHECK(current.frames[k].cpu_ms == v2.frames[k + 1].cpu_ms);
+  }
+  CHECK(run_program({"run", "street", "--policy", "static", "--frames-out", folder.path("x"), "--frames-format", "v9"})
+            .exit_code == 2);
+  CHECK(run_program({"run", "street", "--policy", "static", "--frames-format", "presentmon-v2"}).exit_code == 2);
+  CHECK(run_program({"run", "street", "--policy", "static", "--frames", "2", "--frames-out", folder.path("x"),
+                     "--frames-format", "presentmon-v2"})
+            .exit_code == 2);
+  CHECK(folder.names() == std::vector<std::string>{"current.csv", "own.csv", "v1.csv", "v2.csv"});
+}
+
+TEST_CASE("the header families that frames-format writes are those of PresentMon's own files, name by name") {
+  const auto gold = shared_data("captures/presentmon-gold");
+  if (!gold) return;
+  const TestFolder folder;
+  for (const auto& [format, suffix] : {std::pair("v1", "_v1"), std::pair("v2", "_v2"), std::pair("current", "")}) {
+    const std::string path = folder.path(format);
+    CHECK(run_program({"run", "street", "--policy", "static", "--frames", "3", "--frames-out", path, "--frames-format",
+                       fmt::format("presentmon-{}", format)})
+              .exit_code == 0);
+    std::ifstream theirs(fmt::format("{}/test_case_0{}.csv", *gold, suffix)), ours(path);
+    std::string their_header, our_header;
+    std::getline(theirs, their_header);
+    std::getline(ours, our_header);
+    their_header = their_header.substr(3, their_header.find('\r') - 3);  // byte-order mark
+    CHECK(our_header == their_header);
+  }
 }
 
 TEST_CASE("real captures: the same frames in three header families agree, and what is no capture is refused") {
