@@ -17,6 +17,7 @@
 #include "experiments/progress.h"
 #include "experiments/seeds.h"
 #include "experiments/table.h"
+#include "experiments/traces/trace.h"
 #include "experiments/verbs.h"
 #include "scenes/registry.h"
 #include "sim/quantity.h"
@@ -213,6 +214,7 @@ void run_one(const RunOptions& options, const Session& session) {
   if (!options.frames_out.empty()) {
     write_file(options.frames_out, family ? capture_csv(result, watched, *family) : frames_csv(result));
   }
+  if (!options.trace_out.empty()) write_file(options.trace_out, trace_json(result, watched));
   fmt::print("{}", describe_run(result));
   if (options.profile) fmt::print("{}", describe_profile(result.profile, mean_visible(result)));
   if (options.plot_folder.empty() && session.quiet) return;
@@ -243,6 +245,7 @@ std::int64_t read_seeds(const std::string& text, std::uint64_t first) {
 
 void refuse_with_seeds(const RunOptions& options) {
   const std::pair<const char*, bool> for_one[] = {{"--frames-out", !options.frames_out.empty()},
+                                                  {"--trace", !options.trace_out.empty()},
                                                   {"--plot", !options.plot_folder.empty()},
                                                   {"--profile", options.profile}};
   for (const auto& [name, given] : for_one) {
@@ -298,6 +301,11 @@ void add_run(CLI::App& app, Session& session) {
       ->type_name("")
       ->needs("--frames-out")
       ->capture_default_str();
+  verb->add_option(
+          "--trace", options->trace_out,
+          "Write what CPU, GPU stages, bus and display did to this file (JSON; opens in Perfetto and Chrome). A "
+          "slice for each command and stage: about 1 kB a command")
+      ->type_name("FILE");
   verb->add_option("--seeds", options->seeds, "Run N seeds from --seed up, and say how the figures spread over them")
       ->type_name("N");
   verb->add_option("--seeds-out", options->seeds_out, "With --seeds: write one row a seed to this CSV file")
