@@ -17,12 +17,25 @@ namespace {
 const InputLocation kCommandLine{"command line"};
 
 struct CaptureOptions {
-  std::string file, process, refresh, format{kTableFormatNames[0]};
+  std::string file, process, refresh, logic_out, format{kTableFormatNames[0]};
 };
+
+// The CPU work of the capture as an effect for a scene file. Throws InputError if a frame has none.
+std::string logic_effect(const Capture& capture) {
+  std::string times;
+  for (const CaptureFrame& frame : capture.frames) {
+    if (!frame.cpu_ms) throw InputError({capture.name, frame.line}, "--logic-out: the frame has no CPU work");
+    times += fmt::format("{}{}", times.empty() ? "" : ":", *frame.cpu_ms);
+  }
+  return fmt::format("# CPU work of {} frames\n[[effect]]\nname = \"logic-times\"\ntimes = \"{}\"\n",
+                     capture.frames.size(), times);
+}
 
 void import_capture(const CaptureOptions& options) {
   const double refresh_hz = options.refresh.empty() ? 0 : 1 / read_target_s(options.refresh, kCommandLine);
+  if (!options.logic_out.empty()) check_writable(options.logic_out);
   const CaptureReport report = report_on(load_capture(options.file, options.process), refresh_hz);
+  if (!options.logic_out.empty()) write_file(options.logic_out, logic_effect(report.capture));
   fmt::print("{}", format_capture(report, read_table_format(options.format)));
 }
 
@@ -76,6 +89,9 @@ void add_capture(CLI::App& app) {
           "--refresh", options->refresh,
           "Refresh rate or period of the display, for missed blanks (default: found from the times on the screen)")
       ->type_name("RATE");
+  verb->add_option("--logic-out", options->logic_out,
+                   "Write the frames' CPU work to this file as [[effect]] logic-times, to be put into a scene file")
+      ->type_name("FILE");
   verb->add_option("--format", options->format, "table, csv, json or markdown")->type_name("")->capture_default_str();
   verb->footer(
       "Examples:\n"

@@ -1,6 +1,7 @@
 // Captures: columns by name in every header family, streams, what is skipped; measures against numbers derived by hand.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -314,6 +315,30 @@ TEST_CASE("the header families that frames-format writes are those of PresentMon
     their_header = their_header.substr(3, their_header.find('\r') - 3);  // byte-order mark
     CHECK(our_header == their_header);
   }
+}
+
+TEST_CASE("a capture serves as the logic load of a scene") {
+  const TestFolder folder;
+  const std::string capture = folder.write("c.csv", "FrameTime,CPUBusy\n10,8\n11,2.5\n10,4\n"),
+                    logic = folder.path("logic.toml");
+  REQUIRE(run_program({"import", "capture", capture, "--logic-out", logic}).exit_code == 0);
+  CHECK(folder.read("logic.toml") ==
+        "# CPU work of 3 frames\n[[effect]]\nname = \"logic-times\"\ntimes = \"8:2.5:4\"\n");
+  const std::string frames = folder.path("f.csv");
+  REQUIRE(run_program({"run", "street", "--policy", "static", "--frames", "4", "--effect", "logic-times:times=8:2.5:4",
+                       "--frames-out", frames})
+              .exit_code == 0);
+  std::istringstream lines(folder.read("f.csv"));
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = split_csv_row(line);
+  const auto column = std::find(names.begin(), names.end(), "logic_ps") - names.begin();
+  for (const char* ps : {"8000000000", "2500000000", "4000000000", "8000000000"}) {
+    std::getline(lines, line);
+    CHECK(split_csv_row(line)[static_cast<std::size_t>(column)] == ps);
+  }
+  const std::string none = folder.write("n.csv", "FrameTime\n10\n");
+  CHECK(run_program({"import", "capture", none, "--logic-out", folder.path("x")}).exit_code == 3);
 }
 
 TEST_CASE("real captures: the same frames in three header families agree, and what is no capture is refused") {
