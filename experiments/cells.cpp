@@ -96,12 +96,4 @@ std::string format_cells(const Cells& cells, TableFormat format) {
   return as_text(cells);
 }
 
-TableFormat read_table_format(const std::string& text) {
-  for (std::size_t i = 0; i < std::size(kTableFormatNames); ++i) {
-    if (kTableFormatNames[i] == text) return static_cast<TableFormat>(i);
-  }
-  throw UsageError(
-      fmt::format("--format: {} is unknown; allowed: {}", framesim::quoted(text), list_of(kTableFormatNames)));
-}
-
 }  // namespace framesim

@@ -16,7 +16,4 @@ struct Cells {
 
 std::string format_cells(const Cells& cells, TableFormat format);
 
-// Throws UsageError with all names for a word that is none of them.
-TableFormat read_table_format(const std::string& text);
-
 }  // namespace framesim

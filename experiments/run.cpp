@@ -131,14 +131,14 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
   return spec.frames > 0 ? std::min(spec.frames, path) : path;
 }
 
-RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
-  return spec.aim ? run_aimed(spec, scene, on_frame) : run_with_budgets(spec, scene, {}, on_frame);
-}
+namespace {
 
-RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<const double> budgets_s,
-                           const std::function<void()>& on_frame) {
+RunResult run_once(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
+                   std::span<const double> budgets_s, const EngineMaker& engine_maker) {
   const Parts parts = make_parts(spec, scene);
   RunResult result = describe(spec, scene, parts);
+  std::function<std::unique_ptr<Engine>()> maker;
+  if (engine_maker) maker = [&] { return engine_maker(parts.machine->profile(), spec.engine); };
   Simulation simulation({.scene = *parts.source,
                          .policy = *parts.policy,
                          .planner = *parts.planner,
@@ -151,7 +151,8 @@ RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<co
                          .bound = spec.bound,
                          .check_selections = spec.verify,
                          .budgets_s = budgets_s,
-                         .profile = spec.profile ? &result.profile : nullptr});
+                         .profile = spec.profile ? &result.profile : nullptr,
+                         .make_engine = std::move(maker)});
   const std::int64_t frames = frames_to_run(spec, scene);
   result.records.reserve(static_cast<std::size_t>(frames));
   for (std::int64_t frame = 0; frame < frames; ++frame) {
@@ -163,6 +164,22 @@ RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<co
   result.records_hash = hash(result.records);
   result.benchmark_draws = parts.machine->benchmark_draws();
   return result;
+}
+
+}  // namespace
+
+RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame) {
+  return spec.aim ? run_aimed(spec, scene, on_frame) : run_once(spec, scene, on_frame, {}, {});
+}
+
+RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<const double> budgets_s,
+                           const std::function<void()>& on_frame) {
+  return run_once(spec, scene, on_frame, budgets_s, {});
+}
+
+RunResult run_watched(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
+                      const EngineMaker& engine_maker) {
+  return run_once(spec, scene, on_frame, {}, engine_maker);
 }
 
 bool holds(const RunResult& result) { return result.summary.p95_s <= kHoldTolerance * result.target_s; }

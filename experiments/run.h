@@ -100,6 +100,11 @@ RunResult run(const RunSpec& spec, const Scene& scene, const std::function<void(
 RunResult run_with_budgets(const RunSpec& spec, const Scene& scene, std::span<const double> budgets_s,
                            const std::function<void()>& on_frame = {});
 
+// Makes the engine of a run in place of make_engine(): for those who watch it at work. It must give the same times.
+using EngineMaker = std::function<std::unique_ptr<Engine>(const MachineProfile& machine, const EngineOptions& options)>;
+RunResult run_watched(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
+                      const EngineMaker& engine_maker);
+
 // A run that holds its target: the 95th percentile of frame time is at most 1.10 times the target.
 inline constexpr double kHoldTolerance = 1.10;
 bool holds(const RunResult& result);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "experiments/captures/writer.h"
 #include "experiments/gnuplot.h"
 #include "experiments/options.h"
 #include "experiments/output_file.h"
@@ -17,6 +18,7 @@
 #include "experiments/progress.h"
 #include "experiments/seeds.h"
 #include "experiments/table.h"
+#include "experiments/traces/trace.h"
 #include "experiments/verbs.h"
 #include "scenes/registry.h"
 #include "sim/quantity.h"
@@ -25,7 +27,8 @@ namespace framesim {
 namespace {
 
 struct RunOptions {
-  std::string scene, policy, target, frames_out, plot_folder, seeds, seeds_out;
+  std::string scene, policy, target, frames_out, trace_out, plot_folder, seeds, seeds_out;
+  std::string frames_format{kFramesFormatNames[0]};
   bool profile = false;
   SharedOptions shared;
 };
@@ -189,6 +192,8 @@ double mean_visible(const RunResult& result) {
 void run_one(const RunOptions& options, const Session& session) {
   RunSpec spec = read_spec(options);
   if (!options.frames_out.empty()) check_writable(options.frames_out);
+  if (!options.trace_out.empty()) check_writable(options.trace_out);
+  const std::optional<CaptureFamily> family = read_frames_format(options.frames_format);
   const Scene scene = load_scene(spec.scene);
   if (spec.target_s == 0) spec.target_s = scene.targets_s.front();
   check_parts(spec, scene);
@@ -197,13 +202,20 @@ void run_one(const RunOptions& options, const Session& session) {
     make_folder(options.plot_folder);
   }
   const auto start = std::chrono::steady_clock::now();
+  const bool watches = family || !options.trace_out.empty();
+  Watch watch;
   RunResult result;
   {
     Progress progress("frames", frames_to_run(spec, scene), session.quiet);
-    result = run(spec, scene, [&] { progress.advance(); });
+    const auto on_frame = [&] { progress.advance(); };
+    result = watches ? run_watched(spec, scene, on_frame, watch.maker()) : run(spec, scene, on_frame);
   }
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!options.frames_out.empty()) write_file(options.frames_out, frames_csv(result));
+  const WatchedRun watched = watches ? watch.finish() : WatchedRun{};
+  if (!options.frames_out.empty()) {
+    write_file(options.frames_out, family ? capture_csv(result, watched, *family) : frames_csv(result));
+  }
+  if (!options.trace_out.empty()) write_file(options.trace_out, trace_json(result, watched));
   fmt::print("{}", describe_run(result));
   if (options.profile) fmt::print("{}", describe_profile(result.profile, mean_visible(result)));
   if (options.plot_folder.empty() && session.quiet) return;
@@ -218,6 +230,7 @@ void run_one(const RunOptions& options, const Session& session) {
 
 void refuse_with_seeds(const RunOptions& options) {
   const std::pair<const char*, bool> for_one[] = {{"--frames-out", !options.frames_out.empty()},
+                                                  {"--trace", !options.trace_out.empty()},
                                                   {"--plot", !options.plot_folder.empty()},
                                                   {"--profile", options.profile}};
   for (const auto& [name, given] : for_one) {
@@ -268,6 +281,16 @@ void add_run(CLI::App& app, Session& session) {
       ->type_name("TIME");
   add_shared_options(*verb, options->shared);
   verb->add_option("--frames-out", options->frames_out, "Write one row a frame to this CSV file")->type_name("FILE");
+  verb->add_option("--frames-format", options->frames_format,
+                   "With --frames-out: framesim, presentmon-v1, presentmon-v2 or presentmon-current")
+      ->type_name("")
+      ->needs("--frames-out")
+      ->capture_default_str();
+  verb->add_option(
+          "--trace", options->trace_out,
+          "Write what CPU, GPU stages, bus and display did to this file (JSON; opens in Perfetto and Chrome). A "
+          "slice for each command and stage: about 1 kB a command")
+      ->type_name("FILE");
   verb->add_option("--seeds", options->seeds, "Run N seeds from --seed up, and say how the figures spread over them")
       ->type_name("N");
   verb->add_option("--seeds-out", options->seeds_out, "With --seeds: write one row a seed to this CSV file")

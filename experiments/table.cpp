@@ -8,16 +8,16 @@
 
 #include "experiments/csv_row.h"
 #include "experiments/version.h"
+#include "sim/check.h"
 #include "sim/quantity.h"
 
 namespace framesim {
 namespace {
 
 bool is_share(const SummaryColumn& column) {
-  static constexpr std::array kShares = {&Summary::avg_err, &Summary::bias, &Summary::over_target,
-                                         &Summary::benefit_share, &Summary::bound_share,
-                                         &Summary::over_budget,   &Summary::estimator_error,
-                                         &Summary::err_estimator, &Summary::err_planner,
+  static constexpr std::array kShares = {&Summary::avg_err,         &Summary::bias,          &Summary::over_target,
+                                         &Summary::benefit_share,   &Summary::bound_share,   &Summary::over_budget,
+                                         &Summary::estimator_error, &Summary::err_estimator, &Summary::err_planner,
                                          &Summary::err_selection};
   return std::find(kShares.begin(), kShares.end(), column.value) != kShares.end();
 }
@@ -108,6 +108,13 @@ std::string format_markdown(std::span<const RunResult> results) {
 }
 
 }  // namespace
+
+TableFormat read_table_format(const std::string& text) {
+  for (std::size_t i = 0; i < std::size(kTableFormatNames); ++i) {
+    if (kTableFormatNames[i] == text) return static_cast<TableFormat>(i);
+  }
+  throw UsageError(fmt::format("--format: '{}' is unknown; allowed: {}", text, fmt::join(kTableFormatNames, ", ")));
+}
 
 std::vector<std::string> csv_table_header() {
   std::vector<std::string> header = {"scene", "policy", "target_s"};

@@ -12,6 +12,8 @@ namespace framesim {
 
 enum class TableFormat { text, csv, json, markdown };
 inline constexpr std::string_view kTableFormatNames[] = {"table", "csv", "json", "markdown"};
+// Of the word of --format; throws UsageError for another one.
+TableFormat read_table_format(const std::string& text);
 
 // scene, policy, target_s, the columns of Summary, hash. Numbers are the shortest that read back as the same double.
 std::vector<std::string> csv_table_header();

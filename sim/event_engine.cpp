@@ -4,13 +4,16 @@
 
 namespace framesim {
 
-EventEngine::EventEngine(const MachineProfile& machine) : ring_(machine), state_(machine, ring_) {
+EventEngine::EventEngine(const MachineProfile& machine, PipelineLog* log)
+    : log_(log), ring_(machine), state_(machine, ring_, log) {
   if (machine.overlap.frames_in_flight > 1) ahead_.emplace(state_);
 }
 
 FrameTimes EventEngine::run(const FrameWork& work) {
   const std::uint64_t taken_before = state_.events_taken();
+  if (log_ != nullptr && ahead_) log_->entries.resize(certain_);
   state_.submit(work);
+  if (log_ != nullptr) certain_ = log_->entries.size();
   if (ahead_) *ahead_ = state_;
   PipelineState& state = ahead_ ? *ahead_ : state_;
   state.show();

@@ -40,8 +40,9 @@ namespace framesim {
 class EventEngine final : public Engine {
  public:
   // Uses primitive_fifo, pixel_fifo, overlap.frames_in_flight, bus and client of `machine`. Throws InternalError for a FIFO
-  // without a place, no frame in flight, and a client that leaves nothing of the GPU.
-  explicit EventEngine(const MachineProfile& machine);
+  // without a place, no frame in flight, and a client that leaves nothing of the GPU. If `log` is given,
+  // run() appends what happens until the frame is shown, and takes back what it had foreseen beyond the next submission.
+  explicit EventEngine(const MachineProfile& machine, PipelineLog* log = nullptr);
   EventEngine(const EventEngine&) = delete;
   EventEngine& operator=(const EventEngine&) = delete;
   EngineKind kind() const override { return EngineKind::events; }
@@ -50,6 +51,8 @@ class EventEngine final : public Engine {
   FrameTimes run(const FrameWork& work) override;
 
  private:
+  PipelineLog* log_;
+  std::size_t certain_ = 0;  // entries of the log that no later frame repeats
   CommandRing ring_;
   PipelineState state_;
   std::optional<PipelineState> ahead_;  // with more than one frame in flight

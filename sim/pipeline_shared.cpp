@@ -93,6 +93,7 @@ void PipelineState::grant_bus() {
   bus_decision_due_ = false;
   const SharedBus::Grant grant = bus_.grant(events_.now(), !closed_);
   if (grant.user == SharedBus::User::none) return;
+  note(grant.user == SharedBus::User::fetch ? Passage::fetch : Passage::upload, 0, grant.length);
   events_.schedule(after(events_.now(), grant.length), Phase::transfer_done, bus_.turn());
   if (grant.user == SharedBus::User::fetch) {
     begin_work(primitive_, Phase::primitive_done, (*ring_)[primitive_begun_ - 1].primitive);
@@ -122,6 +123,7 @@ bool PipelineState::job_may_start() {
 
 void PipelineState::take_gpu() {
   job_start_due_ = false;
+  client_since_ = events_.now();
   suspend(primitive_);
   suspend(pixel_);
   events_.schedule(client_.take(events_.now()), Phase::job_leaves, 0);
@@ -129,6 +131,7 @@ void PipelineState::take_gpu() {
 
 void PipelineState::give_gpu_back() {
   client_.leave();
+  note(Passage::client_end, 0, events_.now() - client_since_);
   closed_ = client_.waits();
   if (closed_) return;
   resume(primitive_, Phase::primitive_done);

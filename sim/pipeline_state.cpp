@@ -39,8 +39,9 @@ CommandRing::CommandRing(const MachineProfile& machine) {
 }
 
 // Frames: the newest, as many as may be in flight before it, and the one before those, whose time the display may ask for.
-PipelineState::PipelineState(const MachineProfile& machine, CommandRing& ring)
+PipelineState::PipelineState(const MachineProfile& machine, CommandRing& ring, PipelineLog* log)
     : ring_(&ring),
+      log_(log),
       primitive_capacity_(capacity_of(machine.primitive_fifo, "primitive_fifo")),
       pixel_capacity_(capacity_of(machine.pixel_fifo, "pixel_fifo")),
       in_flight_(static_cast<std::int64_t>(capacity_of(machine.overlap.frames_in_flight, "frames_in_flight"))),
@@ -123,6 +124,7 @@ inline void PipelineState::leave_cpu() {
   command.frame = newest_;
   command.first = i == 0;
   command.last = next_command_ == columns.size();
+  note(Passage::submitted, submitted_ - 1);
   if (bus_.exists()) note_transfers(command, i);
   if (command.last) {
     frames_[newest_slot_].submitted = events_.now();
@@ -138,6 +140,7 @@ inline void PipelineState::start_primitive() {
   if (primitive_.state != Server::idle || primitive_begun_ == submitted_ || closed_) return;
   if (bus_.exists() && uploaded_ == primitive_begun_) return;  // waits for its upload
   const PipelineCommand& command = (*ring_)[primitive_begun_++];
+  note(Passage::primitive_begin, primitive_begun_ - 1);
   if (command.first) frame(command.frame).first_draw = events_.now();
   if (command.fetch.count() > 0) {
     primitive_.state = Server::waits_for_bus;
@@ -151,7 +154,7 @@ inline void PipelineState::start_primitive() {
 // The command that the per-primitive stage has done enters FIFO 2, if there is a place; the next one begins.
 inline void PipelineState::leave_primitive() {
   if (primitive_.state != Server::waits_for_place || primitive_left_ - pixel_begun_ == pixel_capacity_) return;
-  ++primitive_left_;
+  note(Passage::primitive_end, primitive_left_++);
   primitive_.state = Server::idle;
   start_pixel();
   start_primitive();
@@ -160,6 +163,7 @@ inline void PipelineState::leave_primitive() {
 
 inline void PipelineState::start_pixel() {
   if (pixel_.state != Server::idle || pixel_begun_ == primitive_left_ || closed_) return;
+  note(Passage::pixel_begin, pixel_begun_);
   begin_work(pixel_, Phase::pixel_done, (*ring_)[pixel_begun_++].pixel);
 }
 
@@ -174,6 +178,7 @@ void PipelineState::settle() {
 // After its last command a frame swaps and is offered to the display: at once, or at the next vertical blank.
 void PipelineState::finish_pixels() {
   pixel_.state = Server::idle;
+  note(Passage::pixel_end, pixel_begun_ - 1);
   const PipelineCommand& command = (*ring_)[pixel_begun_ - 1];
   if (!command.last) return;
   Frame& drawn = frame(command.frame);

@@ -9,6 +9,7 @@
 #include "sim/engine.h"
 #include "sim/event_queue.h"
 #include "sim/gpu_client_jobs.h"
+#include "sim/pipeline_log.h"
 #include "sim/shared_bus.h"
 
 namespace framesim {
@@ -45,8 +46,9 @@ class CommandRing {
 
 class PipelineState {
  public:
-  // Uses fifos, frames in flight, bus and client of `machine`; `ring` must be as large as that machine's, and live longer.
-  PipelineState(const MachineProfile& machine, CommandRing& ring);
+  // Uses fifos, frames in flight, bus and client of `machine`; `ring` must be as large as that machine's, and live longer. So must
+  // `log`, if there is one; copies write to the same.
+  PipelineState(const MachineProfile& machine, CommandRing& ring, PipelineLog* log = nullptr);
 
   // Hands the next frame to the CPU, which must be idle, and goes on until the CPU has submitted it.
   void submit(const FrameWork& work);
@@ -77,6 +79,10 @@ class PipelineState {
   std::size_t slot(std::int64_t number) const { return static_cast<std::size_t>(number) % frames_.size(); }
   Frame& frame(std::int64_t number) { return frames_[slot(number)]; }
   void step();
+  void note(Passage passage, std::uint64_t command, Picoseconds length = Picoseconds(0)) {
+    if (log_ != nullptr) [[unlikely]]
+      log_->entries.push_back({passage, command, events_.now(), length});
+  }
 
   // CPU and display.
   void begin_if_allowed();
@@ -113,6 +119,7 @@ class PipelineState {
   void resume(Stage& stage, Phase phase);
 
   CommandRing* ring_;
+  PipelineLog* log_;
   std::uint64_t primitive_capacity_, pixel_capacity_;
   std::int64_t in_flight_;
   EventQueue events_;
@@ -137,6 +144,7 @@ class PipelineState {
   std::int64_t waiting_frame_ = 0;
 
   GpuClientJobs client_;
+  SimTime client_since_{0};  // the job of the client that has the GPU
   bool shared_;  // there is a bus or a client
   bool job_start_due_ = false;
   Picoseconds held_at_last_drawn_{0};

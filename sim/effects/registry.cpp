@@ -10,6 +10,7 @@ namespace framesim {
   effect(frames_in_flight_effect) \
   effect(fifo_effect)            \
   effect(submission_effect)      \
+  effect(logic_times_effect)     \
   effect(logic_spikes_effect)    \
   effect(semantics_effect)       \
   effect(focus_effect)           \

@@ -92,6 +92,7 @@ SettingsOfEffects inert_settings(const MachineProfile& machine, bool single_leve
       {"submission",
        {"submission", fmt::format("submission:command={},draw={}", format_duration(machine.submit_s),
                                   format_duration(machine.submit_draw_s))}},
+      {"logic-times", {"logic-times"}},
       {"logic-spikes", {"logic-spikes:every=1,first=0,duration=0", "logic-spikes:pattern=poisson,first=0,rate=0"}},
       {"semantics", {"semantics:weight=0"}},
       {"focus", {"focus:weight=0"}},
@@ -126,6 +127,7 @@ std::string lively_settings(const std::string& name) {
       {"frames-in-flight", "frames-in-flight:n=3"},
       {"fifo", "fifo:primitive=2,pixel=1"},
       {"submission", "submission:command=55us"},
+      {"logic-times", "logic-times:times=3:0.5:9"},
       {"logic-spikes", "logic-spikes:pattern=poisson,first=0,rate=0.7,duration=2ms"},
       {"hysteresis", "hysteresis:weight=0.5"},
       {"cross-fade", "cross-fade:frames=2"},
@@ -347,7 +349,11 @@ TEST_CASE("effects: switching another effect on changes no draw of logic-spikes"
       if (other.name == "logic-spikes") continue;
       CAPTURE(other.name);
       const auto both = draws_with(scene, {"logic-spikes", std::string(other.name)}, seed);
-      for (std::size_t k = 0; k < alone.size(); ++k) CHECK(both[k].logic_ps == alone[k].logic_ps);
+      // logic-times replaces the time that spikes are added to: what they add is compared.
+      const bool replaces = other.name == "logic-times";
+      const auto base = replaces ? draws_with(scene, {std::string(other.name)}, seed) : none;
+      for (std::size_t k = 0; k < alone.size(); ++k)
+        CHECK(both[k].logic_ps - base[k].logic_ps == alone[k].logic_ps - none[k].logic_ps);
     }
   }
 }

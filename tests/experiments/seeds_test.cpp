@@ -163,6 +163,7 @@ TEST_CASE("an effect that says it does not use its seed gives the same run for a
   const std::map<std::string, std::string> lively = {{"frames-in-flight", "frames-in-flight:n=3"},
                                                      {"fifo", "fifo:primitive=2,pixel=1"},
                                                      {"submission", "submission:command=55us"},
+                                                     {"logic-times", "logic-times:times=3:9"},
                                                      {"logic-spikes", "logic-spikes:every=2,first=1,duration=2ms"},
                                                      {"cross-fade", "cross-fade:frames=2"},
                                                      {"vsync", "vsync:rate=60Hz"},
