@@ -47,7 +47,8 @@ inline std::string as_file(std::string_view text, const char* name) {
   (void)made, (void)at_exit;
   const std::string path = (folder / name).string();
   std::FILE* file = std::fopen(path.c_str(), "wb");
-  require(file && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fclose(file) == 0, "a temp file");
+  require(file && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fclose(file) == 0,
+          "a temp file");
   return path;
 }
 

@@ -1,5 +1,6 @@
 // Machine profiles: read, and if accepted, the stage times of a frame's commands are taken from them.
 #include "scenes/machine_file.h"
+
 #include "tests/fuzz/fuzz.h"
 
 using namespace framesim;

@@ -16,7 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Workload workload;
   for (const std::int64_t frame : {std::int64_t{0}, source->scene().frames - 1}) {
     for (const bool curves : {false, true}) {
-      for (const bool hierarchy : {false, true}) source->fill(frame, {.curves = curves, .hierarchy = hierarchy}, workload);
+      for (const bool hierarchy : {false, true})
+        source->fill(frame, {.curves = curves, .hierarchy = hierarchy}, workload);
     }
   }
   return 0;

@@ -48,7 +48,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<Spec> specs;
   fuzz::accepts([&] { specs = read_specs({text}, kWhere); });
   for (const Spec& spec : specs) {
-    fuzz::require(to_string(parse_spec(to_string(spec), kWhere)) == to_string(spec), "a spec reads back as it was written");
+    fuzz::require(to_string(parse_spec(to_string(spec), kWhere)) == to_string(spec),
+                  "a spec reads back as it was written");
     plug_ins(spec);
   }
   return 0;
