@@ -104,9 +104,12 @@ SceneCamera read_camera(const TableReader& root, const SceneFolder& folder) {
   const TomlNode* node = root.table("camera");
   if (!node) throw InputError(root.where(), "the file has no table [camera]");
   const TableReader table(root.document(), *node, "[camera]", {"use", "path"});
+  const std::string used = table.has("use") ? table.text("use") : "";  // "": the first
   std::vector<SceneCamera> paths;
   for (const TomlNode* path : table.tables("path")) {
     paths.push_back(read_path(root.document(), *path, folder));
+    // Checked, and dropped at once: a line of text may stand for kMostFrames poses.
+    if (used.empty() ? paths.size() > 1 : paths.back().name != used) paths.back().poses = std::vector<Pose>();
     for (std::size_t i = 0; i + 1 < paths.size(); ++i) {
       if (paths[i].name != paths.back().name) continue;
       throw InputError(root.document().where(path->place),

@@ -20,12 +20,15 @@ fuzz_one() { # SECONDS TARGET
     -verbosity=0 -artifact_prefix="$build/findings/$target/" "$@" \
     "$build/grown/$target" "tests/fuzz/corpus/$target" >"$build/$target.log" 2>&1 || status=$?
   executed=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
-  if [ "$status" -ne 0 ]; then
+  if [ "$status" -eq 72 ]; then # libFuzzer's code for an interrupt
+    echo "$target: $executed executions until interrupted, nothing found"
+  elif [ "$status" -ne 0 ]; then
     echo "$target: a finding after ${executed:-?} executions"
     tail -n 40 "$build/$target.log" >&2
     return 1
+  else
+    echo "$target: $executed executions in $seconds s, nothing found"
   fi
-  echo "$target: $executed executions in $seconds s, nothing found"
 }
 
 if [ "${1-}" = --one ]; then

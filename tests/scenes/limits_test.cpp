@@ -90,6 +90,35 @@ TEST_CASE("the limit counts every way of making instances, and is the caller's t
   CHECK(parse_scene(all, "t.toml", folder.path(), {}, {.instances = 9}).instances.size() == 9);
 }
 
+TEST_CASE("cylinders of trunks count towards the limit", "[limits]") {
+  const auto types = [](int count) {
+    std::string text =
+        "representation = 'view-levels'\n" + scene("[[instance]]\ntype = 'house'\nposition = [0, 0, 0]\n");
+    for (int i = 0; i < count; ++i) {
+      text += "[[type]]\nname = 't" + std::to_string(i) +
+              "'\nradius = '1m'\narea = 1.0\n[type.continuous]\npolygons = 9\nvertices = 9\n[type.view_levels]\n"
+              "part = 'trunk'\ncylinders = 80\nthickest = '9cm'\nthinnest = '1cm'\n";
+    }
+    return text;
+  };
+  // 16 * 10 = 160 are two types' worth.
+  CHECK(refused(types(2), "", {.instances = 10}).empty());
+  CHECK(refused(types(3), "", {.instances = 10}).find("240 cylinders with those before; allowed are 160") !=
+        std::string::npos);
+}
+
+TEST_CASE("of several camera paths the one in use has its poses", "[limits]") {
+  const std::string two = kBegin +
+                          "[[camera.path]]\nname = 'run'\n[[camera.path.leg]]\nkind = 'polyline'\n"
+                          "points = [[5, 0, 0], [5, 0, -9]]\nframes = 3\n[machine]\nuse = 'street'\n"
+                          "[[instance]]\ntype = 'house'\nposition = [0, 0, 0]\n";
+  std::string second = two;
+  second.replace(second.find("[camera]\n"), 9, "[camera]\nuse = 'run'\n");
+  CHECK(parse_scene(two, "t.toml", "").camera.poses.size() == 2);
+  CHECK(parse_scene(second, "t.toml", "").camera.poses.size() == 3);
+  CHECK(parse_scene(second, "t.toml", "").camera.poses[0].eye.x == 5);
+}
+
 TEST_CASE("a symbolic link may not lead out of the scene's folder", "[limits]") {
   namespace fs = std::filesystem;
   const TempFolder outside, folder;
