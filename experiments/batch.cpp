@@ -6,9 +6,9 @@
 
 namespace framesim {
 
-std::shared_ptr<const Scene> SceneCache::get(const Spec& spec) {
+std::shared_ptr<const Scene> SceneCache::get(const Spec& spec, const SceneLimits& limits) {
   auto& scene = scenes_[to_string(spec)];
-  if (!scene) scene = std::make_shared<const Scene>(load_scene(spec));
+  if (!scene) scene = std::make_shared<const Scene>(load_scene(spec, limits));
   return scene;
 }
 

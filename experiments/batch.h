@@ -10,11 +10,11 @@
 
 namespace framesim {
 
-// Scenes by spec, each read once.
+// Scenes by spec, each read once, all within the same limits.
 class SceneCache {
  public:
   // Throws InputError as load_scene does.
-  std::shared_ptr<const Scene> get(const Spec& spec);
+  std::shared_ptr<const Scene> get(const Spec& spec, const SceneLimits& limits = {});
 
  private:
   std::map<std::string, std::shared_ptr<const Scene>> scenes_;

@@ -79,7 +79,7 @@ std::vector<Job> plan_comparison(const ComparisonOptions& options, const InputLo
   SceneCache scenes;
   std::vector<Job> jobs;
   for (const Spec& name : scenes_of(options, where)) {
-    const auto scene = scenes.get(name);
+    const auto scene = scenes.get(name, shared.limits);
     for (const double target_s : given_targets.empty() ? scene_targets(options, *scene) : given_targets) {
       for (const Spec& policy : policies) {
         Job job{shared, scene};

@@ -145,7 +145,7 @@ void explain(const ExplainOptions& options) {
   RunSpec spec = read_shared(options.shared, kCommandLine);
   spec.scene = parse_spec(options.scene, kCommandLine);
   spec.policy = parse_spec(options.policy, kCommandLine);
-  const Scene scene = load_scene(spec.scene);
+  const Scene scene = load_scene(spec.scene, spec.limits);
   spec.target_s = scene.targets_s.front();
   fmt::print("{}", describe_plan(plan(spec, scene), spec.force_inert));
 }

@@ -5,8 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
+#include "scenes/scene_file.h"
 #include "sim/quantity.h"
 
 namespace framesim {
@@ -32,6 +34,21 @@ std::int64_t read_frames(const std::string& text, const InputLocation& where) {
                                         kMostFrames));
   }
   return static_cast<std::int64_t>(*count.value);
+}
+
+SceneLimits read_limits(const SharedOptions& options, const InputLocation& where) {
+  SceneLimits limits;
+  limits.outside_paths = options.outside_paths;
+  if (options.limit_instances.empty()) return limits;
+  const QuantityResult count = parse_number(options.limit_instances);
+  const bool whole = count.value && *count.value >= 1 && *count.value <= static_cast<double>(kMostInstances) &&
+                     *count.value == std::floor(*count.value);
+  if (!whole) {
+    throw InputError(where, fmt::format("--limit-instances: '{}' is not a number of instances; allowed: 1 to {}",
+                                        options.limit_instances, kMostInstances));
+  }
+  limits.instances = static_cast<std::size_t>(*count.value);
+  return limits;
 }
 
 std::uint64_t read_seed(const std::string& text, const InputLocation& where) {
@@ -139,6 +156,13 @@ void add_shared_options(CLI::App& app, SharedOptions& options) {
          "frame). One that is not exact says what it leaves out; see 'framesim explain'")
       ->type_name("NAME")
       ->capture_default_str();
+  app.add_option("--limit-instances", options.limit_instances,
+                 fmt::format("Refuse a scene of more than N instances (default {}), or with generators' grids of more than "
+                             "{} samples for each of them: a small file can ask for any memory",
+                             SceneLimits{}.instances, kSamplesPerInstance))
+      ->type_name("N");
+  app.add_flag("--allow-outside-paths", options.outside_paths,
+               "Files that a scene file names may lie outside of its folder");
   app.add_flag("--verify", options.verify, "Check every selection of every frame against the rules (slow)");
   // For tests: no help text, as an empty group hides it.
   app.add_flag("--force-inert-effects", options.force_inert, "Run effects that cannot change the result too")
@@ -167,6 +191,7 @@ RunSpec read_shared(const SharedOptions& options, const InputLocation& where) {
   spec.seed = read_seed(options.seed, where);
   spec.frames = read_frames(options.frames, where);
   spec.engine.kind = read_fidelity(options.fidelity, where);
+  spec.limits = read_limits(options, where);
   spec.verify = options.verify;
   spec.force_inert = options.force_inert;
   return spec;

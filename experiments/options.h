@@ -22,6 +22,8 @@ struct SharedOptions {
   std::string frames = "all";  // or a count
   std::string fidelity = "auto";
   std::string seed = "1";
+  std::string limit_instances;  // empty: not given
+  bool outside_paths = false;
   bool verify = false;
   bool force_inert = false;
 };

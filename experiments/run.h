@@ -26,6 +26,7 @@ inline constexpr std::string_view kDefaultEstimator = "two-stage";
 // What to run. Names are looked up in the registries; an absent option leaves the choice to scene or policy.
 struct RunSpec {
   Spec scene;
+  SceneLimits limits;
   Spec policy;
   Spec estimator{std::string(kDefaultEstimator), {}, {"command line"}};
   std::optional<Spec> machine;     // else the scene's

@@ -194,7 +194,7 @@ void run_one(const RunOptions& options, const Session& session) {
   if (!options.frames_out.empty()) check_writable(options.frames_out);
   if (!options.trace_out.empty()) check_writable(options.trace_out);
   const std::optional<CaptureFamily> family = read_frames_format(options.frames_format);
-  const Scene scene = load_scene(spec.scene);
+  const Scene scene = load_scene(spec.scene, spec.limits);
   if (spec.target_s == 0) spec.target_s = scene.targets_s.front();
   check_parts(spec, scene);
   if (!options.plot_folder.empty()) {
@@ -244,7 +244,7 @@ void run_many(const RunOptions& options, const Session& session) {
   spec.engine.critical_path = false;  // nothing of it is shown, and eight seeds at a time do not trace it
   const std::int64_t seeds = read_seed_count(options.seeds, spec.seed);
   if (!options.seeds_out.empty()) check_writable(options.seeds_out);
-  const Scene scene = load_scene(spec.scene);
+  const Scene scene = load_scene(spec.scene, spec.limits);
   if (spec.target_s == 0) spec.target_s = scene.targets_s.front();
   check_parts(spec, scene);
   const auto start = std::chrono::steady_clock::now();

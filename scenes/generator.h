@@ -14,7 +14,7 @@ class Generator {
  public:
   virtual ~Generator() = default;
   // Appends to `scene`, whose types are already there. Throws InputError (at the generator's table) if a type it names is
-  // unknown or it would pass kMostInstances. Same settings, same bits.
+  // unknown or it would pass the scene's limits. Same settings, same bits.
   virtual void generate(Scene& scene, const InputLocation& where) const = 0;
 };
 

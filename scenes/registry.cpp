@@ -75,10 +75,10 @@ std::span<const BuiltIn> built_in_machines() {
   return listed.entries;
 }
 
-Scene load_scene(const Spec& spec) {
-  if (is_path(spec.name)) return load_scene_file(spec.name, spec.settings);
+Scene load_scene(const Spec& spec, const SceneLimits& limits) {
+  if (is_path(spec.name)) return load_scene_file(spec.name, spec.settings, limits);
   const BuiltIn& scene = find("scene", built_in_scenes(), spec);
-  return parse_scene(scene.text, std::string(scene.file), "", spec.settings);
+  return parse_scene(scene.text, std::string(scene.file), "", spec.settings, limits);
 }
 
 MachineProfile load_machine(const Spec& spec) {

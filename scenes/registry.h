@@ -19,7 +19,7 @@ std::span<const BuiltIn> built_in_scenes();
 std::span<const BuiltIn> built_in_machines();
 
 // `spec.name` is a built-in scene, or the path of a scene file (it contains '/' or ends in ".toml").
-Scene load_scene(const Spec& spec);
+Scene load_scene(const Spec& spec, const SceneLimits& limits = {});
 // The same for a machine profile: a built-in name or the path of a TOML file with one [machine] table.
 MachineProfile load_machine(const Spec& spec);
 

@@ -87,7 +87,17 @@ struct SceneCamera {
   std::vector<Pose> poses;  // one a frame
 };
 
+// What a scene file may ask for, since a few bytes of it can ask for anything. The user's, not the file's, to raise.
+struct SceneLimits {
+  // Instances, generated ones included. Everything else that grows by a number in the file is bounded by it too: a
+  // generator's grid has at most kSamplesPerInstance times as many samples or sight lines.
+  std::size_t instances = 4'000'000;
+  bool outside_paths = false;  // files that the scene file names may lie outside of its folder
+};
+inline constexpr std::size_t kSamplesPerInstance = 16;
+
 struct Scene {
+  SceneLimits limits;  // that it was read within
   std::string name, title, source, assumptions;
   std::vector<ObjectType> types;
   std::vector<ViewLevels> view_levels;  // one a type

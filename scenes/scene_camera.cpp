@@ -50,7 +50,7 @@ glm::dvec3 read_vector(const CsvReader& csv, std::size_t first) {
   return vector;
 }
 
-void append_poses(std::vector<Pose>& poses, const TableReader& leg, const std::string& folder) {
+void append_poses(std::vector<Pose>& poses, const TableReader& leg, const SceneFolder& folder) {
   const std::string path = file_in_folder(leg, "file", folder);
   CsvReader csv(path, path, kPoseColumns, {}, leg.where("file"));
   std::optional<double> last;
@@ -68,7 +68,7 @@ void append_poses(std::vector<Pose>& poses, const TableReader& leg, const std::s
   if (!last) leg.refuse("file", fmt::format("{} has no poses", quoted(path)));
 }
 
-void append(std::vector<Pose>& poses, const TableReader& leg, std::size_t kind, const std::string& folder) {
+void append(std::vector<Pose>& poses, const TableReader& leg, std::size_t kind, const SceneFolder& folder) {
   if (kind == kCsv) return append_poses(poses, leg, folder);
   const LegLength length = read_length(leg, kind == kTurn);
   if (kind == kTurn) {
@@ -82,7 +82,7 @@ void append(std::vector<Pose>& poses, const TableReader& leg, std::size_t kind, 
   append_leg(poses, SplineLeg{.points = points, .look_at = look_at}, length, where);
 }
 
-SceneCamera read_path(const TomlDocument& document, const TomlNode& node, const std::string& folder) {
+SceneCamera read_path(const TomlDocument& document, const TomlNode& node, const SceneFolder& folder) {
   const TableReader path(document, node, "[[camera.path]]", {"name", "leg"});
   SceneCamera camera{.name = path.identifier("name"), .poses = {}};
   for (const TomlNode* leg : path.tables("leg")) {
@@ -100,13 +100,16 @@ SceneCamera read_path(const TomlDocument& document, const TomlNode& node, const 
 
 }  // namespace
 
-SceneCamera read_camera(const TableReader& root, const std::string& folder) {
+SceneCamera read_camera(const TableReader& root, const SceneFolder& folder) {
   const TomlNode* node = root.table("camera");
   if (!node) throw InputError(root.where(), "the file has no table [camera]");
   const TableReader table(root.document(), *node, "[camera]", {"use", "path"});
+  const std::string used = table.has("use") ? table.text("use") : "";  // "": the first
   std::vector<SceneCamera> paths;
   for (const TomlNode* path : table.tables("path")) {
     paths.push_back(read_path(root.document(), *path, folder));
+    // Checked, and dropped at once: a line of text may stand for kMostFrames poses.
+    if (used.empty() ? paths.size() > 1 : paths.back().name != used) paths.back().poses = std::vector<Pose>();
     for (std::size_t i = 0; i + 1 < paths.size(); ++i) {
       if (paths[i].name != paths.back().name) continue;
       throw InputError(root.document().where(path->place),

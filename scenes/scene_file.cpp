@@ -42,7 +42,7 @@ Screen read_screen(const TableReader& root) {
   return screen;
 }
 
-MachineProfile machine_in_use(const TableReader& table, const std::string& folder) {
+MachineProfile machine_in_use(const TableReader& table, const SceneFolder& folder) {
   const std::string use = table.text("use");
   if (use.find('/') == std::string::npos && !use.ends_with(".toml")) {
     return load_machine({.name = use, .settings = {}, .where = table.where("use")});
@@ -53,7 +53,7 @@ MachineProfile machine_in_use(const TableReader& table, const std::string& folde
   return parse_machine(read_text_file(path, kLargestSceneFile), path);
 }
 
-MachineProfile read_scene_machine(const TableReader& root, const std::string& folder) {
+MachineProfile read_scene_machine(const TableReader& root, const SceneFolder& folder) {
   const TomlNode* node = root.table("machine");
   if (!node) throw InputError(root.where(), "the file has no table [machine]");
   if (!find_member(*node->as_table(), "use")) return read_machine(root.document(), *node);
@@ -117,9 +117,20 @@ SceneDescription read_description(const TableReader& root) {
           .parameters = list_parameters(root.document())};
 }
 
-Scene read_scene(const TableReader& root, const std::string& folder) {
+// Whether `path`, all symbolic links followed, is `folder` or below it. What does not exist has no links.
+bool is_below(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path from = std::filesystem::weakly_canonical(folder, error);
+  if (error) return false;
+  const std::filesystem::path to = std::filesystem::weakly_canonical(path, error);
+  if (error) return false;
+  const std::filesystem::path way = to.lexically_relative(from);
+  return !way.empty() && *way.begin() != "..";
+}
+
+Scene read_scene(const TableReader& root, const SceneFolder& folder, const SceneLimits& limits) {
   SceneDescription description = read_description(root);
-  Scene scene;
+  Scene scene{.limits = limits};
   scene.name = std::move(description.name);
   scene.title = std::move(description.title);
   scene.source = std::move(description.source);
@@ -145,25 +156,30 @@ Scene read_scene(const TableReader& root, const std::string& folder) {
 
 void check_version(const TableReader& root) { root.whole("framesim", 1, 1); }
 
-std::string file_in_folder(const TableReader& table, std::string_view key, const std::string& folder) {
+std::string file_in_folder(const TableReader& table, std::string_view key, const SceneFolder& folder) {
   namespace fs = std::filesystem;
   const std::string name = table.text(key);
-  if (folder.empty())
+  if (folder.path.empty())
     table.refuse(key, fmt::format("found {}; a built-in scene has no files beside it", framesim::quoted(name)));
   const fs::path path(name);
+  const std::string whole = path.is_absolute() || folder.path == "." ? name : folder.path + "/" + name;
+  if (folder.outside_paths) return whole;
   bool inside = path.is_relative();
   for (const fs::path& part : path) inside = inside && part != "..";
-  if (!inside)
-    table.refuse(
-        key, fmt::format("{} leads out of the scene's folder; allowed: a file in or below it", framesim::quoted(name)));
-  return folder == "." ? name : folder + "/" + name;
+  if (!inside || name.find('\0') != std::string::npos || !is_below(whole, folder.path)) {
+    table.refuse(key, fmt::format("{} leads out of the scene's folder; allowed: a file in or below it, or any with "
+                                  "--allow-outside-paths",
+                                  framesim::quoted(name)));
+  }
+  return whole;
 }
 
-Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder, const Settings& settings) {
+Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder, const Settings& settings,
+                  const SceneLimits& limits) {
   TomlDocument document = parse_toml(text, file);
   check_version(TableReader(document, document.root, kRootName, kTopKeys));
   apply_parameters(document, settings);
-  return read_scene(TableReader(document, document.root, kRootName, kTopKeys), folder);
+  return read_scene(TableReader(document, document.root, kRootName, kTopKeys), {folder, limits.outside_paths}, limits);
 }
 
 SceneDescription describe_scene(std::string_view text, const std::string& file) {
@@ -173,10 +189,10 @@ SceneDescription describe_scene(std::string_view text, const std::string& file) 
   return read_description(root);
 }
 
-Scene load_scene_file(const std::string& path, const Settings& settings) {
+Scene load_scene_file(const std::string& path, const Settings& settings, const SceneLimits& limits) {
   const std::string text = read_text_file(path, kLargestSceneFile);
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return parse_scene(text, path, folder.empty() ? "." : folder, settings);
+  return parse_scene(text, path, folder.empty() ? "." : folder, settings, limits);
 }
 
 }  // namespace framesim

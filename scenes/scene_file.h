@@ -1,7 +1,7 @@
 // Scene files: TOML that people write by hand. The format is shown by data/street.toml, which uses every table once.
 //
 // Everything that is wrong is refused with file:line:column, what was found and what is allowed (InputError): unknown keys
-// and tables, wrong types, wrong or missing units, NaN and infinities, negative sizes, counts beyond the limits below,
+// and tables, wrong types, wrong or missing units, NaN and infinities, negative sizes, counts beyond SceneLimits,
 // unknown names, CSV rows, non-monotone times, files that are missing, unreadable, folders, not UTF-8 or too long.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace framesim {
 inline constexpr std::size_t kLargestSceneFile = 16u << 20;  // bytes
 inline constexpr std::size_t kLongestLine = 1u << 20;        // bytes in one line of a scene file or CSV
 inline constexpr std::size_t kLargestCsvFile = 1u << 30;     // bytes
-inline constexpr std::size_t kMostInstances = 16'000'000;    // instances of a scene, generated ones included
+inline constexpr std::size_t kMostInstances = 1'000'000'000;  // that SceneLimits::instances may be raised to
 
 // A parameter that the scene file declares under [parameters], for `framesim list scenes`.
 struct SceneParameter {
@@ -31,11 +31,12 @@ struct SceneDescription {
 
 // Reads and checks the scene in `text`, whose origin is called `file` in messages; relative CSV paths are taken from
 // `folder` ("" = no files allowed, for built-in scenes). `settings` set the scene's declared parameters.
-Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder, const Settings& settings = {});
+Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder, const Settings& settings = {},
+                  const SceneLimits& limits = {});
 SceneDescription describe_scene(std::string_view text, const std::string& file);
 
 // The same for a file on disk.
-Scene load_scene_file(const std::string& path, const Settings& settings = {});
+Scene load_scene_file(const std::string& path, const Settings& settings = {}, const SceneLimits& limits = {});
 
 // The whole text of a regular file of at most `largest` bytes with no line longer than kLongestLine; throws InputError
 // otherwise (missing, folder, unreadable, too large) without reading more than it must.

@@ -24,8 +24,8 @@ std::string unknown(std::string_view kind, std::string_view name, const std::map
 
 // Why there can be no more instances, or nothing.
 std::optional<std::string> too_many(const Scene& scene) {
-  if (scene.instances.size() <= kMostInstances) return std::nullopt;
-  return fmt::format("more than {} instances", kMostInstances);
+  if (scene.instances.size() <= scene.limits.instances) return std::nullopt;
+  return fmt::format("more than {} instances; --limit-instances N allows more", scene.limits.instances);
 }
 
 void append(Scene& scene, TypeId id, const glm::dvec3& centre, double scale, std::uint16_t cell) {
@@ -53,6 +53,7 @@ void read_inline(const TableReader& root, const TypeNames& types, const CellName
       cell = at->second;
     }
     append(scene, found->second, table.point("position"), table.number("scale", kScale, 1.0), cell);
+    if (const auto why = too_many(scene)) table.refuse("type", *why);
   }
 }
 
@@ -69,7 +70,7 @@ double checked(const CsvReader& csv, std::size_t column, const Range& range) {
   return value;
 }
 
-void read_csv(const TableReader& table, const std::string& folder, const TypeNames& types, const CellNames& cells,
+void read_csv(const TableReader& table, const SceneFolder& folder, const TypeNames& types, const CellNames& cells,
               Scene& scene) {
   const std::string path = file_in_folder(table, "csv", folder);
   CsvReader csv(path, path, kNeeded, kOptional, table.where("csv"));
@@ -121,7 +122,7 @@ void run_generators(const TableReader& root, Scene& scene) {
 
 }  // namespace
 
-void read_instances(const TableReader& root, const std::string& folder, const TypeNames& types, const CellNames& cells,
+void read_instances(const TableReader& root, const SceneFolder& folder, const TypeNames& types, const CellNames& cells,
                     Scene& scene) {
   read_inline(root, types, cells, scene);
   if (const TomlNode* node = root.table("instances")) {

@@ -11,6 +11,12 @@
 
 namespace framesim {
 
+// Where the files are that a scene file names.
+struct SceneFolder {
+  std::string path;            // "" = there are none: a built-in scene
+  bool outside_paths = false;  // SceneLimits
+};
+
 using TypeNames = std::map<std::string, TypeId, std::less<>>;
 using CellNames = std::map<std::string, std::uint16_t, std::less<>>;
 
@@ -26,13 +32,14 @@ CellNames read_cells(const TableReader& root, Scene& scene);
 void read_portals(const TableReader& root, const CellNames& cells, Scene& scene);
 
 // [[instance]], [instances] and [[generator]], in this order (scene_instances.cpp).
-void read_instances(const TableReader& root, const std::string& folder, const TypeNames& types, const CellNames& cells,
+void read_instances(const TableReader& root, const SceneFolder& folder, const TypeNames& types, const CellNames& cells,
                     Scene& scene);
 
 // [camera]: the path in use; the others are checked too (scene_camera.cpp).
-SceneCamera read_camera(const TableReader& root, const std::string& folder);
+SceneCamera read_camera(const TableReader& root, const SceneFolder& folder);
 
-// The path of the file that `key` names, relative to `folder`; refuses absolute paths, "..", and all where `folder` is "".
-std::string file_in_folder(const TableReader& table, std::string_view key, const std::string& folder);
+// The path of the file that `key` names, relative to `folder`. Refuses one that lies elsewhere (an absolute path, "..", a
+// symbolic link that leads out) unless `outside_paths`, and all where there is no folder.
+std::string file_in_folder(const TableReader& table, std::string_view key, const SceneFolder& folder);
 
 }  // namespace framesim

@@ -169,6 +169,7 @@ TypeNames read_types(const TableReader& root, Scene& scene) {
     root.refuse("type", fmt::format("found {} types; allowed: up to {}", nodes.size(), kMostTypes));
   }
   TypeNames names;
+  std::size_t cylinders = 0;
   for (const TomlNode* node : nodes) {
     const TomlMember* name = find_member(*node->as_table(), "name");
     const bool named = name && name->node.as_text();
@@ -179,6 +180,13 @@ TypeNames read_types(const TableReader& root, Scene& scene) {
     const auto id = static_cast<TypeId>(scene.types.size() - 1);
     if (!names.emplace(scene.types.back().name, id).second) {
       table.refuse("name", fmt::format("there are two types {}", quoted(scene.types.back().name)));
+    }
+    cylinders += scene.view_levels.back().cylinder_diameter_m.size();
+    if (cylinders > scene.limits.instances * kSamplesPerInstance) {
+      table.refuse("view_levels",
+                   fmt::format("{} cylinders with those before; allowed are {}, {} for each instance of "
+                               "--limit-instances N",
+                               cylinders, scene.limits.instances * kSamplesPerInstance, kSamplesPerInstance));
     }
   }
   return names;

@@ -33,9 +33,9 @@ const ParameterTable<GrovesParameters>& parameters() {
       {"seed",
        &GrovesParameters::seed,
        {.low = 0, .high = 9e15, .help = "seed of forest, jitter and (as in terrain) heights"}},
-      {"count", &GrovesParameters::count, {.low = 0, .high = 16e6, .help = "number of trees"}},
+      {"count", &GrovesParameters::count, {.low = 0, .high = kMostCount, .help = "number of trees"}},
       {"group", &GrovesParameters::group, {.low = 1, .high = 1024, .help = "most trees of a group"}},
-      {"grid", &GrovesParameters::grid, {.low = 1, .high = 8192, .help = "cells a side, a power of two"}},
+      {"grid", &GrovesParameters::grid, {.low = 1, .high = kMostSide, .help = "cells a side, a power of two"}},
       {"splats_per_tree", &GrovesParameters::splats_per_tree, {.low = 1, .high = 1e6, .help = "at full resolution"}},
       {"tree_height",
        &GrovesParameters::tree_height,
@@ -180,6 +180,7 @@ class Groves final : public Generator {
     if (!std::has_single_bit(static_cast<std::uint64_t>(p_.grid))) {
       throw InputError(where, fmt::format("grid {} is not a power of two", p_.grid));
     }
+    check_samples(scene, static_cast<double>(p_.grid) * static_cast<double>(p_.grid), "cells of the grid", where);
     if (p_.count > p_.grid * p_.grid) {
       throw InputError(
           where, fmt::format("{} trees on a grid of {} cells; one cell holds one tree", p_.count, p_.grid * p_.grid));

@@ -41,7 +41,7 @@ const ParameterTable<MuseumParameters>& parameters() {
       {"pillar",
        &MuseumParameters::pillar,
        {.unit = "m", .low = 0, .high = 1e3, .help = "wall left on each side of an opening"}},
-      {"statues", &MuseumParameters::statues, {.low = 0, .high = 1e6, .help = "number of statues"}},
+      {"statues", &MuseumParameters::statues, {.low = 0, .high = kMostCount, .help = "number of statues"}},
       {"samples", &MuseumParameters::samples, {.low = 0, .high = 1e6, .help = "sight lines a cell; 0: none are made"}},
   }};
   return table;
@@ -156,6 +156,9 @@ class Museum final : public Generator {
     add_statues(scene, plan, first, random, where);
     scene.instances.cell.resize(scene.instances.size(), kNoCell);
     if (p_.samples > 0) {
+      const auto cells = static_cast<double>(scene.cells.size());
+      check_samples(scene, cells * static_cast<double>(p_.samples), "sight lines", where);
+      check_samples(scene, cells * cells, "pairs of cells", where);
       make_cell_visibility(scene, static_cast<int>(p_.samples), static_cast<std::uint64_t>(p_.seed));
     }
   }

@@ -133,15 +133,24 @@ void place_instance(Scene& scene, TypeId type, const glm::dvec3& centre, double 
 
 void reserve_instances(Scene& scene, std::size_t more, const InputLocation& where) {
   const std::size_t size = scene.instances.size();
-  if (more > kMostInstances || size + more > kMostInstances) {
-    throw InputError(where,
-                     fmt::format("{} instances beside {}; allowed are {} in a scene", more, size, kMostInstances));
+  const std::size_t most = scene.limits.instances;
+  if (more > most || size + more > most) {
+    throw InputError(where, fmt::format("{} instances beside {}; allowed are {} in a scene, or more with "
+                                        "--limit-instances N",
+                                        more, size, most));
   }
   scene.instances.centre.reserve(size + more);
   scene.instances.radius_m.reserve(size + more);
   scene.instances.area_m2.reserve(size + more);
   scene.instances.type.reserve(size + more);
   scene.instances.kind.reserve(size + more);
+}
+
+void check_samples(const Scene& scene, double count, std::string_view what, const InputLocation& where) {
+  const auto most = static_cast<double>(scene.limits.instances) * static_cast<double>(kSamplesPerInstance);
+  if (count <= most) return;
+  throw InputError(where, fmt::format("{:.0f} {}; allowed are {:.0f}, {} for each instance of --limit-instances N", count,
+                                      what, most, kSamplesPerInstance));
 }
 
 void begin_tree(Scene& scene) {

@@ -27,6 +27,12 @@ struct MixEntry {
   double weight = 1;
 };
 
+// What generators' parameters are bounded by before the scene's limits are, so that every product of two is exact.
+inline constexpr double kMostCount = 1e15;
+inline constexpr double kMostSide = 1 << 24;  // samples
+// A count that may be beyond any limit, as a number to refuse.
+inline std::size_t count_of(double count) { return static_cast<std::size_t>(count < 1e18 ? count : 1e18); }
+
 // Reads "oak:2,elm:1": kinds and their weights (default 1). "trunk@4+leaves@7:2" places two instances at one spot;
 // "@4" is the height of the centre above the ground at scale 1, by default the type's radius. With a variant "v" the types
 // are oak-v and elm-v. Throws InputError.
@@ -39,8 +45,10 @@ void shuffle(std::vector<std::uint32_t>& values, const RandomStream& random, std
 
 // Appends instances in the form that the scene's other columns have: with cells, with a tree.
 void place_instance(Scene& scene, TypeId type, const glm::dvec3& centre, double scale, std::uint16_t cell);
-// Makes room for `more` instances; throws InputError if the scene would pass kMostInstances.
+// Makes room for `more` instances; throws InputError if the scene would pass its limit, before anything is allocated.
 void reserve_instances(Scene& scene, std::size_t more, const InputLocation& where);
+// Throws InputError if a grid of `count` samples, cells or sight lines ("height samples") is beyond the scene's limit.
+void check_samples(const Scene& scene, double count, std::string_view what, const InputLocation& where);
 // Turns a scene without a tree into one whose instances are roots without children.
 void begin_tree(Scene& scene);
 // Appends a node of the tree, whose subtree is not known yet: set its columns when it is.

@@ -17,8 +17,8 @@ constexpr double kFar = 1e6;  // metres
 
 const ParameterTable<RowsParameters>& parameters() {
   static const ParameterTable<RowsParameters> table{{
-      {"columns", &RowsParameters::columns, {.low = 1, .high = 1e6, .help = "instances in a row, along x"}},
-      {"rows", &RowsParameters::rows, {.low = 1, .high = 1e6, .help = "rows, along z"}},
+      {"columns", &RowsParameters::columns, {.low = 1, .high = kMostCount, .help = "instances in a row, along x"}},
+      {"rows", &RowsParameters::rows, {.low = 1, .high = kMostCount, .help = "rows, along z"}},
       {"x", &RowsParameters::x, {.unit = "m", .low = -kFar, .high = kFar, .help = "centre of the first instance"}},
       {"y", &RowsParameters::y, {.unit = "m", .low = -kFar, .high = kFar, .help = "centre of the first instance"}},
       {"z", &RowsParameters::z, {.unit = "m", .low = -kFar, .high = kFar, .help = "centre of the first instance"}},
@@ -40,7 +40,7 @@ class Rows final : public Generator {
   void generate(Scene& scene, const InputLocation& where) const override {
     const TypeId type = find_type(scene, type_, where);
     const std::uint16_t cell = find_cell(scene, cell_, where);
-    reserve_instances(scene, static_cast<std::size_t>(p_.columns) * static_cast<std::size_t>(p_.rows), where);
+    reserve_instances(scene, count_of(static_cast<double>(p_.columns) * static_cast<double>(p_.rows)), where);
     for (std::int64_t row = 0; row < p_.rows; ++row) {
       for (std::int64_t column = 0; column < p_.columns; ++column) {
         const auto r = static_cast<double>(row), c = static_cast<double>(column);

@@ -29,7 +29,7 @@ constexpr double kFar = 1e6;  // metres
 const ParameterTable<ScatterParameters>& parameters() {
   static const ParameterTable<ScatterParameters> table{{
       {"seed", &ScatterParameters::seed, {.low = 0, .high = 9e15, .help = "seed of positions, kinds and scales"}},
-      {"count", &ScatterParameters::count, {.low = 0, .high = 16e6, .help = "number of spots"}},
+      {"count", &ScatterParameters::count, {.low = 0, .high = kMostCount, .help = "number of spots"}},
       {"low_x", &ScatterParameters::low_x, {.unit = "m", .low = -kFar, .high = kFar, .help = "rectangle, west"}},
       {"high_x", &ScatterParameters::high_x, {.unit = "m", .low = -kFar, .high = kFar, .help = "rectangle, east"}},
       {"low_z", &ScatterParameters::low_z, {.unit = "m", .low = -kFar, .high = kFar, .help = "rectangle, north"}},
@@ -60,7 +60,7 @@ class Scatter final : public Generator {
     if (count == 0) return;
     std::size_t most_parts = 1;
     for (const MixEntry& entry : mix) most_parts = std::max(most_parts, entry.parts.size());
-    reserve_instances(scene, count * most_parts, where);
+    reserve_instances(scene, count_of(static_cast<double>(count) * static_cast<double>(most_parts)), where);
     const RandomStream random(static_cast<std::uint64_t>(p_.seed), "scatter");
     const Grid grid = make_grid(count, where);
     const std::vector<std::uint32_t> kinds = deal_mix(mix, count, random);

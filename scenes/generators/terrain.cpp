@@ -25,7 +25,7 @@ struct TerrainParameters {
 const ParameterTable<TerrainParameters>& parameters() {
   static const ParameterTable<TerrainParameters> table{{
       {"seed", &TerrainParameters::seed, {.low = 0, .high = 9e15, .help = "seed of the heights"}},
-      {"side", &TerrainParameters::side, {.low = 3, .high = 8193, .help = "samples a side: patch * 2^k + 1"}},
+      {"side", &TerrainParameters::side, {.low = 3, .high = kMostSide, .help = "samples a side: patch * 2^k + 1"}},
       {"patch", &TerrainParameters::patch, {.low = 2, .high = 1024, .help = "quads a side of a patch"}},
       {"region", &TerrainParameters::region, {.unit = "m", .low = 1, .high = 1e6, .help = "side of the region"}},
       {"relief",
@@ -106,6 +106,7 @@ class Terrain final : public Generator {
     if (patches * p_.patch + 1 != p_.side || !std::has_single_bit(static_cast<std::uint64_t>(patches))) {
       throw InputError(where, fmt::format("side {} is not patch * 2^k + 1 for patch {}", p_.side, p_.patch));
     }
+    check_samples(scene, static_cast<double>(p_.side) * static_cast<double>(p_.side), "height samples", where);
     if (!scene.cells.empty()) throw InputError(where, "terrain and cells do not go together");
     const int depth = std::countr_zero(static_cast<std::uint64_t>(patches));
     std::vector<TypeId> types;

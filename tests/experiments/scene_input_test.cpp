@@ -118,4 +118,33 @@ TEST_CASE("scene input: a machine file that is wrong is refused the same way") {
   CHECK(has(run.err, path + ":"));
 }
 
+TEST_CASE("scene input: the limit on instances and the bounds of the folder are options of run, compare and explain") {
+  const TestFolder folder, outside;
+  outside.write("a.csv", "type,x,y,z\nhouse,0,2,-30\n");
+  const std::string csv = "../" + std::filesystem::path(outside.path("a.csv")).parent_path().filename().string() + "/a.csv";
+  const std::string named =
+      folder.write("named.toml", street_with("[[generator]]", "[instances]\ncsv = '" + csv + "'\n[[generator]]"));
+  const std::string many = folder.write("many.toml", street_with("step_x = 8", "step_x = 8\nrows = 500000000000"));
+  for (const std::string verb : {"run", "compare", "explain"}) {
+    const auto call = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> words{verb};
+      if (verb == "compare") words.push_back("--scenes");
+      words.insert(words.end(), more.begin(), more.end());
+      if (verb == "run") words.insert(words.end(), {"--policy", "static"});
+      if (verb == "compare") words.insert(words.end(), {"--policies", "static"});
+      const ProgramRun run = run_program(words);
+      return run.exit_code == 0 ? "" : fmt::format("{}: {}", run.exit_code, run.err);
+    };
+    CAPTURE(verb);
+    // 4 inline and 2 lamps.
+    CHECK(call({"street", "--limit-instances", "6"}).empty());
+    CHECK(has(call({"street", "--limit-instances", "5"}), "3: framesim: data/street.toml"));
+    CHECK(has(call({"street", "--limit-instances", "5"}), "2 instances beside 4; allowed are 5"));
+    CHECK(has(call({"street", "--limit-instances", "many"}), "2: framesim: command line"));
+    CHECK(has(call({many}), "1000000000000 instances beside 4; allowed are 4000000"));
+    CHECK(has(call({named}), "leads out of the scene's folder"));
+    CHECK(call({named, "--allow-outside-paths"}).empty());
+  }
+}
+
 }  // namespace framesim

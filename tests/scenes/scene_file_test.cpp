@@ -481,6 +481,15 @@ TEST_CASE("recorded poses are one a row, in time", "[scene_file]") {
   CHECK(says(refused_poses(header), "t.toml:27:8", "has no poses"));
 }
 
+// Found by fuzzing: the TOML library's test for blanks was undefined for most of these. Two bytes each in UTF-8.
+TEST_CASE("letters beyond ASCII in a key are refused at their place", "[scene_file]") {
+  for (unsigned letter = 0xa1; letter <= 0x49a; ++letter) {
+    const std::string bytes{static_cast<char>(0xc0 | (letter >> 6)), static_cast<char>(0x80 | (letter & 0x3f))};
+    CAPTURE(letter);
+    CHECK(says(refused(with(10, "[machine" + bytes + "x]")), "t.toml:10:9", "not TOML"));
+  }
+}
+
 TEST_CASE("more instances than the limit are refused before they are made", "[scene_file]") {
   const std::string rows = "[[generator]]\nkind = 'rows'\ntype = 'house'\ncolumns = 100000\nrows = 161\n";
   CHECK(refused(added(rows)).rfind("t.toml:29:1: ", 0) == 0);
