@@ -53,12 +53,15 @@ auto make(std::string_view kind, std::span<const Entry> entries, const std::stri
 struct Result {
   double misses = 0;                                 // share of frames
   double switches = 0, benefit_share = 0, ngap = 0;  // means over frames
+  double budget_s = 0;                               // of all frames
+  bool holds = false;                                // the 95th percentile is at most 1.10 times the target
 };
 
 // `frames` 0: the path once.
 Result run(const std::string& scene_text, const std::string& policy_text, double target_s, std::int64_t frames,
-           bool disturbed) {
-  const Scene scene = load_scene(parse_spec(scene_text));
+           bool disturbed, bool free_decisions = false) {
+  Scene scene = load_scene(parse_spec(scene_text));
+  if (free_decisions) scene.machine.operation_s = 0;
   Endless source(scene, disturbed);
   const auto policy = make("policy", policies(), policy_text);
   const auto planner = make("planner", planners(), "inverse");
@@ -70,10 +73,13 @@ Result run(const std::string& scene_text, const std::string& policy_text, double
   Simulation simulation({source, *policy, *planner, *estimator, machine, scene.logic, active}, {.target_s = target_s});
   BenefitBound yardstick;
   Result result;
+  std::int64_t late = 0;
   const std::int64_t count = frames > 0 ? frames : source.period();
   for (std::int64_t k = 0; k < count; ++k) {
     const FrameRecord& record = simulation.step();
     result.misses += to_seconds(Picoseconds(record.frame_time_ps)) > target_s ? 1 : 0;
+    late += to_seconds(Picoseconds(record.frame_time_ps)) > 1.1 * target_s ? 1 : 0;
+    result.budget_s += record.budget_s;
     result.switches += static_cast<double>(record.switches);
     if (disturbed) continue;
     const FrameBound bound = yardstick.compute(simulation.workload(), record.budget_s);
@@ -84,6 +90,7 @@ Result run(const std::string& scene_text, const std::string& policy_text, double
   for (double* mean : {&result.misses, &result.switches, &result.benefit_share, &result.ngap}) {
     *mean /= static_cast<double>(count);
   }
+  result.holds = 20 * late <= count;
   return result;
 }
 
@@ -135,6 +142,27 @@ TEST_CASE("no policy that keeps its budget comes nearer to the bound") {
     for (const char* other : {"funkhouser", "mixed-gradient", "lagrange", "active-set", "hierarchical"}) {
       CAPTURE(c.scene, other);
       CHECK(ours <= run(c.scene, other, c.target_s, frames, false).ngap + 1e-6);
+    }
+  }
+}
+
+TEST_CASE("at the same budgets no policy that keeps the target comes nearer to the bound, on every scene and target") {
+  // Decisions are free, so that all policies are given the same budgets: otherwise each one's own decision time is taken
+  // from its budget, and the bound at another budget may by chance lie nearer to what whole levels can reach. Ties, which
+  // `exact` would share, differ by rounding only: 1e-9.
+  for (const BuiltIn& entry : built_in_scenes()) {
+    const Scene scene = load_scene(parse_spec(std::string(entry.name)));
+    const bool large = make_workload_source(scene)->scene().instances > 2000;
+    const std::int64_t frames = kSlow ? 1 : large ? 2 : 12;
+    for (const double target_s : scene.targets_s) {
+      const Result ours = run(std::string(entry.name), "certified", target_s, frames, false, true);
+      for (const PolicyEntry& other : policies()) {
+        if (other.name == "exact" || other.name == "certified") continue;
+        const Result theirs = run(std::string(entry.name), std::string(other.name), target_s, frames, false, true);
+        CAPTURE(entry.name, target_s, other.name, theirs.budget_s, ours.budget_s);
+        CHECK(theirs.budget_s == ours.budget_s);
+        if (theirs.holds) CHECK(ours.ngap <= theirs.ngap + 1e-9);
+      }
     }
   }
 }
