@@ -16,8 +16,8 @@ class SmallExact {
  public:
   static constexpr std::size_t kMostItems = 128;
 
-  // Replaces plan and levels where it finds a selection of more benefit within budget_s; everything: each item with levels
-  // is drawn. The plan's bound stays as it is: it holds for every selection. Counts its operations in the plan.
+  // Replaces plan and levels where it finds a selection of more benefit within budget_s; everything: each item with
+  // levels is drawn. The plan's bound stays as it is: it holds for every selection. Counts its operations in the plan.
   void improve(const Workload& workload, double budget_s, bool everything, FlatPlan& plan,
                std::span<std::int16_t> level);
 
