@@ -14,7 +14,7 @@ namespace framesim::certified {
 // There the enumeration of policies/knapsack/core_search.h, as far as kMostStates, mostly reaches the optimum.
 class SmallExact {
  public:
-  static constexpr std::size_t kMostItems = 128;
+  static constexpr std::size_t kMostItems = 512;
 
   // Replaces plan and levels where it finds a selection of more benefit within budget_s; everything: each item with
   // levels is drawn. The plan's bound stays as it is: it holds for every selection. Counts its operations in the plan.
