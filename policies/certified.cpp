@@ -5,7 +5,8 @@
 //                inference (Gibbs and Candes 2021).
 // What it does:  searches the multiplier at which the budget is spent, from last frame's: flat lists by vectorised passes
 //                (certified/flat_search.h), trees and curves by sweeps (certified/tree_search.h). Near-ties are decided together
-//                to use what is left. Selection::bound holds for every selection within the planner's budget, in floating
+//                to use what is left, and lists of few items searched exactly
+//                (certified/small_exact.h). Selection::bound holds for every selection within the planner's budget, in floating
 //                point, whatever the parameters say.
 // Omitting:      with `none=true` "not drawn" is a level like others. Otherwise every item with levels is drawn if the
 //                cheapest levels fit together; if not, items may be left out in that frame. Curves may always go to 0.
@@ -20,6 +21,7 @@
 
 #include "policies/certified/flat_search.h"
 #include "policies/certified/headroom.h"
+#include "policies/certified/small_exact.h"
 #include "policies/certified/tree_search.h"
 #include "policies/keep_budget.h"
 #include "policies/level_rules.h"
@@ -147,6 +149,7 @@ class CertifiedPolicy : public Policy {
       if (proof.bound < plan.bound) plan.bound = proof.bound, plan.multiplier = proof.multiplier;
       plan.operations += proof.operations;
     }
+    if (!keeps()) small_.improve(workload, budget_s, drawn, plan, selection.level);
     if (drawn) {
       std::fill(selection.resolution.begin(), selection.resolution.end(), 1.0);
     } else {
@@ -209,6 +212,7 @@ class CertifiedPolicy : public Policy {
       flat_bound_{static_cast<std::size_t>(parameters_.states)};
   TreeSearch tree_{static_cast<std::size_t>(parameters_.states)},
       tree_bound_{static_cast<std::size_t>(parameters_.states)};
+  SmallExact small_;
   double unspent_s_ = 0;                  // of the planner's budget, in this frame
   std::vector<std::uint8_t> last_level_;  // an instance: its level in the last frame it was visible
   std::vector<std::int64_t> last_frame_;  // ... and that frame
