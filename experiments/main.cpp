@@ -83,6 +83,7 @@ int run_program(int argc, char** argv) {
   framesim::add_explain(app, session);
   framesim::add_check(app, session);
   framesim::add_tradeoff(app, session);
+  framesim::add_fit(app, session);
   app.footer(
       "Examples:\n"
       "  framesim compare\n"

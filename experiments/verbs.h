@@ -19,5 +19,6 @@ void add_compare(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_tradeoff(CLI::App& app, Session& session);
+void add_fit(CLI::App& app, Session& session);
 
 }  // namespace framesim
