@@ -52,10 +52,10 @@ void fit(const FitOptions& options, const Session& session) {
   if (!runs && options.frames != "all") throw UsageError("--frames is about runs, and the rows are frames");
   SharedOptions shared;
   shared.frames = options.frames;
-  const MachineFit result =
-      runs ? fit_runs(request, read_measured_runs(options.from, read_shared(shared, kCommandLine)), options.from,
-                      options.jobs, session.quiet)
-           : fit_frames(request, read_frame_rows(options.from, options.window));
+  const MachineFit result = runs
+                                ? fit_runs(request, read_measured_runs(options.from, read_shared(shared, kCommandLine)),
+                                           options.from, options.jobs, session.quiet)
+                                : fit_frames(request, read_frame_rows(options.from, options.window));
   if (!options.output.empty()) write_file(options.output, fit_toml(result));
   fmt::print("{}", format_fit(result, format));
 }

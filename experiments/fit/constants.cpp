@@ -37,8 +37,8 @@ std::string algorithm_toml(std::string_view name, const AlgorithmCosts& costs) {
                 ? fmt::format("{} = {}\n", constant.name, value)
                 : fmt::format("{} = \"{}\"\n", constant.name, format_duration(value));
   }
-  const bool costs_time = costs.draw_s > 0 || costs.polygon_s > 0 || costs.vertex_s > 0 || costs.texture_byte_s > 0 ||
-                          costs.pixel_s > 0;
+  const bool costs_time =
+      costs.draw_s > 0 || costs.polygon_s > 0 || costs.vertex_s > 0 || costs.texture_byte_s > 0 || costs.pixel_s > 0;
   return costs_time ? fmt::format("\n[machine.algorithm.{}]\n{}", name, text) : "";
 }
 

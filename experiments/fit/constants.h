@@ -23,9 +23,11 @@ std::span<const ConstantInfo> constant_infos();
 // Throws UsageError naming the legal ones.
 std::size_t find_constant(std::string_view name);
 
-// The value in `machine`. Of an algorithm's cost: the first one's above 0, or 0; of the overlap: its s, 1/3 if it is staged.
+// The value in `machine`. Of an algorithm's cost: the first one's above 0, or 0; of the overlap: its s, 1/3 if it is
+// staged.
 double constant_of(const MachineProfile& machine, std::size_t constant);
-// Sets it. An algorithm's cost: of all algorithms, which keep their ratios; where all are 0 they get the same. The overlap: becomes
+// Sets it. An algorithm's cost: of all algorithms, which keep their ratios; where all are 0 they get the same. The
+// overlap: becomes
 // T = max + s*min with this s.
 void set_constant(MachineProfile& machine, std::size_t constant, double value);
 

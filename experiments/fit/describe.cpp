@@ -13,9 +13,7 @@
 namespace framesim {
 namespace {
 
-bool is_time(const std::string& name) {
-  return name != "overlap" && name != "pixel_nonlinearity" && name != "jitter";
-}
+bool is_time(const std::string& name) { return name != "overlap" && name != "pixel_nonlinearity" && name != "jitter"; }
 
 // Four digits that matter, with a unit.
 std::string show(const std::string& name, double value) {
@@ -31,14 +29,17 @@ std::vector<FittedConstant> with_jitter(const MachineFit& fit) {
 
 std::vector<std::string> cells(const FittedConstant& constant) {
   const double low = std::max(0.0, constant.value - constant.half_width);
-  return {constant.name, show(constant.name, constant.value), show(constant.name, low),
-          show(constant.name, constant.value + constant.half_width), show(constant.name, constant.before),
+  return {constant.name,
+          show(constant.name, constant.value),
+          show(constant.name, low),
+          show(constant.name, constant.value + constant.half_width),
+          show(constant.name, constant.before),
           constant.at_bound ? "at the end of its range" : ""};
 }
 
 std::string heading_line(const MachineFit& fit) {
-  return fmt::format("machine {} fitted to {} of {}, {} degrees of freedom, {:g} % confidence", fit.machine.name, fit.rows,
-                     fit.from, fit.degrees, fit.confidence * 100);
+  return fmt::format("machine {} fitted to {} of {}, {} degrees of freedom, {:g} % confidence", fit.machine.name,
+                     fit.rows, fit.from, fit.degrees, fit.confidence * 100);
 }
 
 std::string residual_line(const FittedColumn& column) {
@@ -69,8 +70,10 @@ std::string text_of(const MachineFit& fit) {
 }
 
 std::string markdown_of(const MachineFit& fit) {
-  std::string out = heading_line(fit) + "\n\n| constant | value | low | high | before | note |\n|---|---|---|---|---|---|\n";
-  for (const FittedConstant& constant : with_jitter(fit)) out += fmt::format("| {} |\n", fmt::join(cells(constant), " | "));
+  std::string out =
+      heading_line(fit) + "\n\n| constant | value | low | high | before | note |\n|---|---|---|---|---|---|\n";
+  for (const FittedConstant& constant : with_jitter(fit))
+    out += fmt::format("| {} |\n", fmt::join(cells(constant), " | "));
   out += "\n";
   for (const FittedColumn& column : fit.columns) out += "- " + residual_line(column) + "\n";
   return out + jitter_line(fit);
@@ -87,9 +90,12 @@ std::string csv_of(const MachineFit& fit) {
 }
 
 std::string json_of(const MachineFit& fit) {
-  nlohmann::ordered_json json = {{"machine", fit.machine.name}, {"from", fit.from},
-                                 {"rows", fit.rows},            {"degrees", fit.degrees},
-                                 {"confidence", fit.confidence}, {"jitter_command", fit.jitter_command}};
+  nlohmann::ordered_json json = {{"machine", fit.machine.name},
+                                 {"from", fit.from},
+                                 {"rows", fit.rows},
+                                 {"degrees", fit.degrees},
+                                 {"confidence", fit.confidence},
+                                 {"jitter_command", fit.jitter_command}};
   for (const FittedConstant& c : with_jitter(fit)) {
     json["constants"].push_back({{"name", c.name},
                                  {"value", c.value},
@@ -142,10 +148,14 @@ MachineFit describe_fit(const FitRequest& request, const std::vector<std::size_t
 
 std::string format_fit(const MachineFit& fit, TableFormat format) {
   switch (format) {
-    case TableFormat::csv: return csv_of(fit);
-    case TableFormat::json: return json_of(fit);
-    case TableFormat::markdown: return markdown_of(fit);
-    case TableFormat::text: break;
+    case TableFormat::csv:
+      return csv_of(fit);
+    case TableFormat::json:
+      return json_of(fit);
+    case TableFormat::markdown:
+      return markdown_of(fit);
+    case TableFormat::text:
+      break;
   }
   return text_of(fit);
 }
@@ -154,8 +164,8 @@ std::string fit_toml(const MachineFit& fit) {
   MachineProfile machine = fit.machine;
   std::string names;
   for (const FittedConstant& constant : fit.constants) names += (names.empty() ? "" : ", ") + constant.name;
-  machine.source = fmt::format("{} fitted by framesim fit to {} of {}; the rest: {}", names, fit.rows, fit.from,
-                               fit.machine.source);
+  machine.source =
+      fmt::format("{} fitted by framesim fit to {} of {}; the rest: {}", names, fit.rows, fit.from, fit.machine.source);
   return machine_toml(machine, "Written by framesim fit; intervals are in its output.");
 }
 

@@ -13,8 +13,8 @@ namespace framesim {
 namespace {
 
 constexpr std::array<std::string_view, kMeasuredColumns> kOwnNames = {
-    "cpu_s",  "gpu_s",          "frame_s",          "commands",   "draws",  "polygons", "vertices", "texture_bytes",
-    "pixels", "pixels_squared", "visibility_tests", "operations", "logic_s"};
+    "cpu_s",         "gpu_s",  "frame_s",        "commands",         "draws",      "polygons", "vertices",
+    "texture_bytes", "pixels", "pixels_squared", "visibility_tests", "operations", "logic_s"};
 // In milliseconds; they stand for the first three.
 constexpr std::array<std::string_view, 3> kCaptureNames = {"CPUBusy", "GPUBusy", "FrameTime"};
 
@@ -56,7 +56,8 @@ class FrameReader {
 
   FrameRows read(int window, const std::string& path) {
     FrameRows rows{.file = path, .rows = {}};
-    for (std::size_t c = 0; c < kMeasuredColumns; ++c) rows.has[c] = csv_.has(c) || (c < 3 && csv_.has(kMeasuredColumns + c));
+    for (std::size_t c = 0; c < kMeasuredColumns; ++c)
+      rows.has[c] = csv_.has(c) || (c < 3 && csv_.has(kMeasuredColumns + c));
     std::vector<CompensatedSum> sums(kMeasuredColumns);
     int held = 0;
     while (csv_.next()) {

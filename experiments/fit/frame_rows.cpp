@@ -63,9 +63,10 @@ class FrameModel {
     choose_equations();
     if (fits(CostSide::overlap) || request.machine.overlap.kind != OverlapKind::staged) return;
     if (equations_.frame && cpu_known() && gpu_known()) {
-      throw InputError({rows.file, 1}, fmt::format("the overlap of machine '{}' is {}, which has no s: fit 'overlap' too, "
-                                                   "or start from a machine with max-plus-s:S",
-                                                   request.machine.name, to_string(request.machine.overlap)));
+      throw InputError({rows.file, 1},
+                       fmt::format("the overlap of machine '{}' is {}, which has no s: fit 'overlap' too, "
+                                   "or start from a machine with max-plus-s:S",
+                                   request.machine.name, to_string(request.machine.overlap)));
     }
   }
 
@@ -119,7 +120,8 @@ class FrameModel {
 
  private:
   bool fits(CostSide side) const {
-    return std::any_of(constants_.begin(), constants_.end(), [&](std::size_t c) { return constant_infos()[c].side == side; });
+    return std::any_of(constants_.begin(), constants_.end(),
+                       [&](std::size_t c) { return constant_infos()[c].side == side; });
   }
   bool cpu_known() const { return rows_.has_column(MeasuredColumn::cpu) || equations_.models_cpu; }
   bool gpu_known() const { return rows_.has_column(MeasuredColumn::gpu) || equations_.models_gpu; }
@@ -144,7 +146,8 @@ class FrameModel {
     std::sort(constants_.begin(), constants_.end());
   }
 
-  // CPU constants where CPU time is measured apart; once-a-row ones where a side has counts at all, but for the clear, which
+  // CPU constants where CPU time is measured apart; once-a-row ones where a side has counts at all, but for the
+  // clear, which
   // the swap stands for.
   void choose_by_columns() {
     const bool cpu = rows_.has_column(MeasuredColumn::cpu), frame = rows_.has_column(MeasuredColumn::frame);
@@ -172,12 +175,15 @@ class FrameModel {
     const bool unmeasured = (equations_.models_cpu && !cpu) || (fits_gpu && !gpu);
     equations_.frame = rows_.has_column(MeasuredColumn::frame) && (fits(CostSide::overlap) || unmeasured);
     if (constants_.empty()) {
-      throw InputError({rows_.file, 1}, "no constant can be found from these columns; needed are a measured time (cpu_s, gpu_s "
-                                        "or frame_s) and counts of what took it, or all three times for the overlap");
+      throw InputError({rows_.file, 1},
+                       "no constant can be found from these columns; needed are a measured time (cpu_s, gpu_s "
+                       "or frame_s) and counts of what took it, or all three times for the overlap");
     }
-    if (unmeasured && !equations_.frame) throw InputError({rows_.file, 1}, "the constants need a column that measures them: cpu_s, gpu_s or frame_s");
+    if (unmeasured && !equations_.frame)
+      throw InputError({rows_.file, 1}, "the constants need a column that measures them: cpu_s, gpu_s or frame_s");
     if (!fits(CostSide::overlap)) return;
-    if (!rows_.has_column(MeasuredColumn::frame)) throw InputError({rows_.file, 1}, "'overlap' needs the column 'frame_s'");
+    if (!rows_.has_column(MeasuredColumn::frame))
+      throw InputError({rows_.file, 1}, "'overlap' needs the column 'frame_s'");
     if (!cpu_known() || !gpu_known()) {
       throw InputError({rows_.file, 1}, fmt::format("'overlap' needs {} time too: the column '{}', or constants of it",
                                                     cpu_known() ? "GPU" : "CPU", cpu_known() ? "gpu_s" : "cpu_s"));
@@ -197,7 +203,8 @@ class FrameModel {
   }
   static double modelled_gpu(const FrameRow& row, const std::vector<double>& all) {
     const double k = all[find_constant("pixel_nonlinearity")];
-    const double pixels = value_of(row, MeasuredColumn::pixels) + k * value_of(row, MeasuredColumn::pixels_squared) / kReferenceArea_px;
+    const double pixels =
+        value_of(row, MeasuredColumn::pixels) + k * value_of(row, MeasuredColumn::pixels_squared) / kReferenceArea_px;
     const double pixel = all[find_constant("clear")] + all[find_constant("pixel")] * pixels;
     return std::max(sum_of(CostSide::primitive, row, all), pixel) + all[find_constant("swap")];
   }
@@ -208,7 +215,8 @@ class FrameModel {
   Equations equations_;
 };
 
-// The model is a maximum of linear ones, so a fit may end where the wrong side is the longer: it starts from several shares.
+// The model is a maximum of linear ones, so a fit may end where the wrong side is the longer: it starts from several
+// shares.
 NonlinearFit best_fit(const FrameModel& model, const Residuals& residuals, const FitSettings& settings,
                       std::vector<FitConstant>& constants) {
   std::optional<NonlinearFit> best;

@@ -11,7 +11,8 @@ using Matrix = std::vector<Column>;  // by columns, all of one length
 
 double length_of(const Column& column);
 
-// R of the QR decomposition of `columns` (at least as many rows as columns), r[j][i] its row i in column j; `rhs`, if not
+// R of the QR decomposition of `columns` (at least as many rows as columns), r[j][i] its row i in column j; `rhs`, if
+// not
 // null, is replaced by its rotation, whose first entries belong to R.
 Matrix triangle_of(Matrix columns, Column* rhs);
 

@@ -11,8 +11,8 @@
 namespace framesim {
 namespace {
 
-constexpr double kSingular = 1e-7;       // of the scaled Jacobian; difference quotients carry 1e-12
-constexpr double kCorrelated = 0.98;     // beyond it, and with intervals wider than the values, two are one
+constexpr double kSingular = 1e-7;        // of the scaled Jacobian; difference quotients carry 1e-12
+constexpr double kCorrelated = 0.98;      // beyond it, and with intervals wider than the values, two are one
 constexpr double kLeastInfluence = 1e-9;  // change of the residuals for a change of the constant by its scale
 
 double sum_of_squares(const Column& column) {
@@ -123,7 +123,8 @@ void refuse_singular(std::span<const FitConstant> constants, const FitSettings& 
     return std::abs(least.direction[a]) > std::abs(least.direction[b]);
   });
   const auto [first, second] = std::minmax(order[0], order[1]);
-  refuse_pair(settings, constants[first].name, constants[second].name, "what they multiply is proportional in every row");
+  refuse_pair(settings, constants[first].name, constants[second].name,
+              "what they multiply is proportional in every row");
 }
 
 void refuse_correlated(std::span<const FitConstant> constants, const FitSettings& settings, const Matrix& inverse,
@@ -139,8 +140,9 @@ void refuse_correlated(std::span<const FitConstant> constants, const FitSettings
     for (std::size_t j = i + 1; j < n; ++j) {
       const double correlation = product(i, j) / std::sqrt(product(i, i) * product(j, j));
       if (std::abs(correlation) <= kCorrelated || !unknown(i) || !unknown(j)) continue;
-      refuse_pair(settings, constants[i].name, constants[j].name,
-                  fmt::format("their correlation is {:.3f} and each one's interval is wider than its value", correlation));
+      refuse_pair(
+          settings, constants[i].name, constants[j].name,
+          fmt::format("their correlation is {:.3f} and each one's interval is wider than its value", correlation));
     }
   }
 }
@@ -161,7 +163,8 @@ NonlinearFit minimise(const Residuals& residuals, std::span<const FitConstant> c
   fit.degrees = static_cast<std::int64_t>(fit.residuals.size()) - static_cast<std::int64_t>(constants.size());
   double damping = 1e-3;
   bool settled = fit.squares == 0;
-  while (!settled && fit.rounds < settings.most_rounds && improve(residuals, constants, settings, damping, fit, settled)) {
+  while (!settled && fit.rounds < settings.most_rounds &&
+         improve(residuals, constants, settings, damping, fit, settled)) {
     ++fit.rounds;
   }
   return fit;
@@ -179,9 +182,10 @@ void add_intervals(const Residuals& residuals, std::span<const FitConstant> cons
   for (std::size_t j = 0; j < columns.size(); ++j) {
     lengths.push_back(length_of(columns[j]));
     if (lengths[j] * constants[j].scale < kLeastInfluence * unit[j]) {
-      throw InputError(settings.where, fmt::format("the data do not determine '{}': no row depends on it; leave it out of "
-                                                   "--constants",
-                                                   constants[j].name));
+      throw InputError(settings.where,
+                       fmt::format("the data do not determine '{}': no row depends on it; leave it out of "
+                                   "--constants",
+                                   constants[j].name));
     }
     for (double& value : columns[j]) value /= lengths[j];
   }

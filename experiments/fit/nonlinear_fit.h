@@ -37,17 +37,21 @@ struct NonlinearFit {
 
 using Residuals = std::function<std::vector<double>(std::span<const double>)>;
 
-// Levenberg's and Marquardt's method (Marquardt 1963) within bounds: constants at a bound that the gradient pushes outwards
+// Levenberg's and Marquardt's method (Marquardt 1963) within bounds: constants at a bound that the gradient pushes
+// outwards
 // are held. Jacobian by central differences (one-sided at a bound), each damped step by Householder's QR; the normal
-// equations, which square the condition, are not formed. Deterministic. A local minimum: where there may be several, start from
+// equations, which square the condition, are not formed. Deterministic. A local minimum: where there may be several,
+// start from
 // several places (`start` of each) and keep the least `squares`.
 NonlinearFit minimise(const Residuals& residuals, std::span<const FitConstant> constants, const FitSettings& settings);
 
-// Fills in the intervals: value +- t * sqrt(squares / degrees * (J'J)^-1_jj), t of Student with `degrees`. Linear theory: exact
+// Fills in the intervals: value +- t * sqrt(squares / degrees * (J'J)^-1_jj), t of Student with `degrees`. Linear
+// theory: exact
 // for residuals linear in the constants and normal errors. Throws InputError at settings.where, naming the constants:
 // - fewer residuals than constants + 1;
 // - no residual depends on a constant;
-// - two constants cannot be told apart: the Jacobian, its columns scaled to length one, has a singular value below 1e-7 (the two
+// - two constants cannot be told apart: the Jacobian, its columns scaled to length one, has a singular value below
+// 1e-7 (the two
 //   are the largest components of its direction), or their correlation is beyond 0.98 and each one's interval is wider
 //   than its value, so that what they give together is known, and neither alone.
 void add_intervals(const Residuals& residuals, std::span<const FitConstant> constants, const FitSettings& settings,

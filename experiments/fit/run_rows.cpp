@@ -116,14 +116,15 @@ std::vector<MeasuredRun> read_measured_runs(const std::string& path, const RunSp
   if (!csv.has(kMean) && !csv.has(kFps) && !csv.has(kAvgErr)) {
     throw InputError({path, 1}, "no measured column; allowed: mean_s, fps, avg_err");
   }
-  if (csv.has(kMean) && csv.has(kFps)) throw InputError({path, 1}, "'mean_s' and 'fps' say the same; allowed: one of them");
+  if (csv.has(kMean) && csv.has(kFps))
+    throw InputError({path, 1}, "'mean_s' and 'fps' say the same; allowed: one of them");
   std::vector<MeasuredRun> runs;
   while (csv.next()) runs.push_back(read_row(csv, shared));
   return runs;
 }
 
-MachineFit fit_runs(const FitRequest& request, const std::vector<MeasuredRun>& runs, const std::string& from, int threads,
-                    bool quiet) {
+MachineFit fit_runs(const FitRequest& request, const std::vector<MeasuredRun>& runs, const std::string& from,
+                    int threads, bool quiet) {
   const FitSettings settings{
       .step = kRunStep, .confidence = request.confidence, .most_rounds = kRunRounds, .where = {from, 1}};
   if (runs.empty()) throw InputError(settings.where, "no rows to fit");
@@ -136,7 +137,8 @@ MachineFit fit_runs(const FitRequest& request, const std::vector<MeasuredRun>& r
   MachineFit fit = describe_fit(request, model.constants(), numbers);
   fit.from = from;
   fit.rows = fmt::format("{} runs", runs.size());
-  const auto means = std::count_if(runs.begin(), runs.end(), [](const MeasuredRun& run) { return run.mean_s.has_value(); });
+  const auto means =
+      std::count_if(runs.begin(), runs.end(), [](const MeasuredRun& run) { return run.mean_s.has_value(); });
   const auto middle = numbers.residuals.begin() + means;
   describe_column(fit, "mean_s", {numbers.residuals.begin(), middle});
   describe_column(fit, "avg_err", {middle, numbers.residuals.end()});

@@ -1,10 +1,11 @@
 // framesim fit: constants that are known come back, and what cannot be known is refused.
+#include "experiments/fit/fit.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <random>
 
-#include "experiments/fit/fit.h"
 #include "scenes/registry.h"
 #include "tests/experiments/program.h"
 #include "tests/scenes/refusal.h"
@@ -19,7 +20,8 @@ struct Known {
   double setup = 2e-4, submit = 5e-6, draw = 2e-6, polygon = 2e-8, vertex = 3e-8, pixel = 1e-9, swap = 1e-4, s = 0.25;
 };
 
-// Rows whose times follow the closed form with the constants above, each time off by a normal factor of deviation `noise`.
+// Rows whose times follow the closed form with the constants above, each time off by a normal factor of deviation
+// `noise`.
 std::string rows(std::uint64_t seed, double noise, int count, bool proportional = false) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0, 1);
@@ -33,15 +35,16 @@ std::string rows(std::uint64_t seed, double noise, int count, bool proportional 
     const double vertices = proportional ? 3 * polygons : between(1e3, 2e5), pixels = between(1e5, 2e7);
     const auto vary = [&](double t) { return t * (1 + noise * normal(random)); };
     const double cpu = vary(k.setup + k.submit * commands);
-    const double gpu =
-        vary(std::max(k.draw * draws + k.polygon * polygons + k.vertex * vertices, k.clear + k.pixel * pixels) + k.swap);
+    const double gpu = vary(
+        std::max(k.draw * draws + k.polygon * polygons + k.vertex * vertices, k.clear + k.pixel * pixels) + k.swap);
     const double frame = vary(std::max(cpu, gpu) + k.s * std::min(cpu, gpu));
     text += fmt::format("{},{},{},{},{},{},{},{}\n", cpu, gpu, frame, commands, draws, polygons, vertices, pixels);
   }
   return text;
 }
 
-const std::vector<std::string> kFitted = {"frame_setup", "submit", "draw", "polygon", "vertex", "pixel", "swap", "overlap"};
+const std::vector<std::string> kFitted = {"frame_setup", "submit", "draw", "polygon",
+                                          "vertex",      "pixel",  "swap", "overlap"};
 
 double truth(const std::string& name) {
   const Known k;
@@ -72,7 +75,8 @@ TEST_CASE("fit finds the constants again where rows carry no noise") {
   }
 }
 
-// 95 % of intervals hold the truth. With 8 constants and 40 seeds 320 intervals, not all independent: 0.95 +- 0.05 is four
+// 95 % of intervals hold the truth. With 8 constants and 40 seeds 320 intervals, not all independent: 0.95 +- 0.05 is
+// four
 // deviations of 320 independent ones (1.2 % each).
 TEST_CASE("fit: the 95 % intervals hold the true constants in about 95 of 100 cases") {
   const std::uint64_t count = seeds(40);
@@ -106,8 +110,8 @@ TEST_CASE("fit refuses bad rows at their line, and too few of them") {
 
 // T = max + s*min with s = 1/2: 10 + 2 = 12, 8 + 3 = 11, 20 + 5 = 25 ms.
 TEST_CASE("fit takes the overlap from a capture's columns and passes the others over") {
-  const MachineFit fit = fit_text(
-      "Application,CPUBusy,GPUBusy,FrameTime\na.exe,4,10,12\na.exe,8,6,11\na.exe,20,10,25\n", {});
+  const MachineFit fit =
+      fit_text("Application,CPUBusy,GPUBusy,FrameTime\na.exe,4,10,12\na.exe,8,6,11\na.exe,20,10,25\n", {});
   REQUIRE(fit.constants.size() == 1);
   CHECK(fit.constants[0].name == "overlap");
   CHECK(fit.constants[0].value == Approx(0.5).epsilon(1e-9));
@@ -147,8 +151,8 @@ TEST_CASE("fit on the command line writes a profile, prints intervals, and refus
   const TestFolder folder;
   const std::string file = folder.write("rows.csv", rows(5, 0.02, 60));
   const std::string names = "frame_setup,submit,draw,polygon,vertex,pixel,swap,overlap";
-  const ProgramRun good = run_program(
-      {"fit", "desktop2020", "--from", file, "--constants", names, "--output", folder.path("m.toml"), "--format", "csv"});
+  const ProgramRun good = run_program({"fit", "desktop2020", "--from", file, "--constants", names, "--output",
+                                       folder.path("m.toml"), "--format", "csv"});
   CAPTURE(good.out, good.err);
   CHECK(good.exit_code == 0);
   CHECK(good.out.rfind("constant,value,low,high,before,at_bound\nframe_setup,", 0) == 0);
