@@ -85,6 +85,7 @@ int parse_and_run(int argc, char** argv) {
   add_check(app, session);
   add_tradeoff(app, session);
   add_import(app, session);
+  add_fit(app, session);
   add_sweep(app, session);
   add_merge(app, session);
   add_query(app, session);
