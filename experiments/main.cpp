@@ -1,4 +1,4 @@
-// framesim: the command line. Exit codes: 0 done; 1 `check` found a difference; 2 the command line is wrong; 3 an input
+// framesim: the command line. Exit codes: 0 done; 1 `check` or `stability` failed; 2 the command line is wrong; 3 an input
 // file is wrong; 4 framesim itself is wrong, or results could not be written to standard output.
 #include <fmt/format.h>
 
@@ -83,13 +83,14 @@ int run_program(int argc, char** argv) {
   framesim::add_explain(app, session);
   framesim::add_check(app, session);
   framesim::add_tradeoff(app, session);
+  framesim::add_stability(app, session);
   app.footer(
       "Examples:\n"
       "  framesim compare\n"
       "  framesim run street --policy robin-hood --target 25ms\n"
       "  framesim explain street --policy robin-hood\n"
       "  framesim list policies\n"
-      "Exit codes: 0 done, 1 check found a difference, 2 wrong command line, 3 wrong input file, 4 internal error.");
+      "Exit codes: 0 done, 1 check found a difference (stability: a row outside its bound), 2 wrong command line, 3 wrong input file, 4 internal error.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
