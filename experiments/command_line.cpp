@@ -84,6 +84,7 @@ int parse_and_run(int argc, char** argv) {
   add_explain(app, session);
   add_check(app, session);
   add_tradeoff(app, session);
+  add_stability(app, session);
   add_import(app, session);
   add_fit(app, session);
   add_sweep(app, session);
@@ -98,7 +99,8 @@ int parse_and_run(int argc, char** argv) {
       "  framesim run street --policy robin-hood --target 25ms\n"
       "  framesim explain street --policy robin-hood\n"
       "  framesim list policies\n"
-      "Exit codes: 0 done, 1 check found a difference or compare a regression, 2 wrong command line, 3 wrong input file, 4 internal error.");
+      "Exit codes: 0 done, 1 check found a difference, compare a regression, or stability a row outside its bound, 2 wrong\n"
+      "command line, 3 wrong input file, 4 internal error.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,7 +10,7 @@ namespace framesim {
 // What verbs share with main.
 struct Session {
   bool quiet = false;  // no progress, no remarks on stderr
-  int exit_code = 0;   // 1 if `check` found a difference, or `compare` a regression
+  int exit_code = 0;   // 1: `check` found a difference, `compare` a regression, `stability` a row outside its bound
 };
 
 void add_list(CLI::App& app, Session& session);
@@ -19,6 +19,7 @@ void add_compare(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_tradeoff(CLI::App& app, Session& session);
+void add_stability(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_sweep(CLI::App& app, Session& session);

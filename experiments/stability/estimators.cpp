@@ -1,0 +1,63 @@
+// Coefficients from trees that are almost alike, and importance near a right angle.
+#include <cmath>
+
+#include "experiments/stability/accuracy.h"
+#include "policies/importance.h"
+#include "sim/estimators/linear_fit.h"
+
+namespace framesim {
+namespace {
+
+// Trees whose polygons and textures are proportional but for `apart`; times are exact, c1 = 3 s and c2 = 5 s.
+std::vector<LinearSample> nearly_proportional(std::int64_t apart) {
+  std::vector<LinearSample> samples;
+  for (std::int64_t k = 1; k <= 8; ++k) {
+    const std::int64_t v = 1'000'000'007 * k + apart * (k * k % 5), s = 1'000'000'007 * k - apart * (k * k * k % 7);
+    samples.push_back({.time_s = static_cast<double>(3 * v + 5 * s),
+                       .polygons = static_cast<double>(v),
+                       .texture_bytes = static_cast<double>(s)});
+  }
+  return samples;
+}
+
+void add_coefficients(std::vector<StabilityRow>& rows) {
+  ErrorCollector ours, pairs;
+  for (const std::int64_t apart : {100'000'000, 10'000'000, 1'000'000, 100'000}) {
+    const std::vector<LinearSample> samples = nearly_proportional(apart);
+    const LinearCosts fit = fit_least_squares(samples);
+    const LinearCosts printed = fit_pairs(samples).value_or(LinearCosts{});
+    ours.add(fit.c1, 3);
+    ours.add(fit.c2, 5);
+    pairs.add(printed.c1, 3);
+    pairs.add(printed.c2, 5);
+  }
+  // Condition up to 1e5, so that many eps are lost by the data themselves.
+  rows.push_back(make_row("trees proportional to 1e-1 .. 1e-4", "c1, c2 (least squares)",
+                          "mean over pairs (Dong eq. 7, 8)", 1e6, ours, pairs));
+}
+
+// tan is ill-conditioned at a right angle: theta's own rounding is not counted, since 50 digits see the same theta.
+void add_importance(std::vector<StabilityRow>& rows) {
+  ErrorCollector ours, none;
+  const ImportanceScale scale;
+  const Exact benchmark = Exact(scale.a1) * Exact(scale.d0_m) + Exact(scale.a2) * 100 / Exact(scale.s0_percent);
+  for (const double gap : {1.5, 1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+    for (const double d_m : {0x1p-1022, 1e-3, 15.0, 1e7}) {
+      for (const double s : {1e-12, 1e-3, 6.0, 100.0}) {
+        const double theta = 1.5707963267948966 - gap;
+        const Exact insignificance = Exact(scale.a1) * (1 + tan(Exact(theta))) * Exact(d_m) + Exact(scale.a2) * 100 / Exact(s);
+        ours.add(dong_importance(scale, d_m, theta, s), benchmark / insignificance);
+      }
+    }
+  }
+  rows.push_back(make_row("view angle to 1e-5 of 90 degrees", "importance (Dong eq. 11, 12)", "", 8, ours, none));
+}
+
+}  // namespace
+
+void add_estimator_rows(std::vector<StabilityRow>& rows) {
+  add_coefficients(rows);
+  add_importance(rows);
+}
+
+}  // namespace framesim
