@@ -3,9 +3,10 @@
 //   least       exact selection, oracle estimator, exact inverse of the overlap with budgets corrected by what the pipeline made
 //               of them (aim.h), decisions free of charge: the AvgErr that scene, target, machine and effects leave to anyone
 //               (jitter, granularity, and what the coarsest levels cost, remain)
-//   estimator   the same with the run's own estimator: what not knowing the machine adds
-//   planner     the same with the run's own planner: what a budget that does not invert the overlap adds
-//   selection   the same with the run's own policy: what choosing otherwise adds
+//   planned     the same with the planner's budgets as they are; what follows is held against it
+//   estimator   planned, with the run's own estimator: what not knowing the machine adds
+//   planner     planned, with the run's own planner: what a budget that does not invert the overlap adds
+//   selection   planned, with the run's own policy: what choosing otherwise adds
 //
 // The exact selection spends no time that buys no benefit, even where the target has room for it, so a row that wastes that
 // time can come closer to the target. The least is then that row's error: of all rows of a scene and target none is below it.

@@ -18,7 +18,7 @@ namespace framesim {
   X(stddev_s, "s", "standard deviation of frame time (n-1)")                                                 \
   X(avg_err, "", "AvgErr = mean(|T - target|) / target (Robin Hood 2005; 1 means 100 % off)")                \
   X(err_over_least, "", "AvgErr over the least known for scene and target: exact selection with aimed budgets, or the closest row") \
-  X(err_estimator, "", "what the run's estimator adds alone to that least AvgErr")                           \
+  X(err_estimator, "", "what the run's estimator adds alone to the AvgErr of ideal parts")                           \
   X(err_planner, "", "... and its planner")                                                                  \
   X(err_selection, "", "... and its policy")                                                                 \
   X(bias, "", "(mean - target) / target; negative is under the target")                                      \
