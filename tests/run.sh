@@ -66,6 +66,9 @@ table() {
 # Enough of everything to notice a difference, small enough for an unoptimised build.
 small() { table "$1" "$2" --scenes street,graphicon-forest,auditorium --frames 40; }
 
+# Errors against 50 digits, in numbers only; the rows have bounds that must hold.
+accuracy() { "$1" stability --format csv >"$2"; }
+
 same() { cmp "$1" "$2"; }
 
 # all_tests FOLDER: every test case of FOLDER/framesim_tests, dealt to one process for each processor. Each process
@@ -94,7 +97,7 @@ sanitized_tests() {
 }
 
 packages=$BUILD_PACKAGES
-[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev coinor-libcbc-dev chromium chromium-driver curl"
+[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev libclang-rt-14-dev coinor-libcbc-dev chromium chromium-driver curl"
 # shellcheck disable=SC2086
 stage "packages" install_packages $packages
 [ "$failed" -eq 0 ] || finish
@@ -113,14 +116,22 @@ stage "default comparison, 2 threads" table build/framesim "$out/jobs-2.csv" --j
 stage "1 and 2 threads: same bytes" same "$out/jobs-1.csv" "$out/jobs-2.csv"
 
 may_skip "report in a browser" sh tests/report/run.sh build/framesim
+may_skip "sweep as a job array" sh tests/cluster/slurm.sh build/framesim
+stage "accuracy tables" accuracy build/framesim "$out/accuracy-g++.csv"
 
 stage "build with clang++" build_framesim build-clang framesim -DCMAKE_CXX_COMPILER=clang++ -DFRAMESIM_TESTS=OFF
 stage "default comparison, clang++" table build-clang/framesim "$out/clang.csv"
 stage "g++ and clang++: same bytes" same "$out/jobs-2.csv" "$out/clang.csv"
 
+stage "accuracy tables, clang++" accuracy build-clang/framesim "$out/accuracy-clang.csv"
+stage "accuracy with g++ and clang++: same bytes" same "$out/accuracy-g++.csv" "$out/accuracy-clang.csv"
+stage "fuzzing, a short run" sh tests/fuzz/run.sh 10
+
 stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON \
   -DFRAMESIM_BENCHMARKS=OFF
 stage "tests with sanitizers" sanitized_tests
+stage "accuracy tables, -O0 with sanitizers" accuracy build-sanitize/framesim "$out/accuracy-O0.csv"
+stage "accuracy with -O0 and -O2: same bytes" same "$out/accuracy-g++.csv" "$out/accuracy-O0.csv"
 stage "small comparison, -O2" small build/framesim "$out/small-O2.csv"
 stage "small comparison, -O0 with sanitizers" small build-sanitize/framesim "$out/small-O0.csv"
 stage "-O0 and -O2: same bytes" same "$out/small-O2.csv" "$out/small-O0.csv"
