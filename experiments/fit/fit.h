@@ -47,9 +47,9 @@ struct MachineFit {
 };
 
 // ---- frames ----
-// Columns (any order, unknown ones refused): measured times cpu_s, gpu_s, frame_s in seconds, or CPUBusy, GPUBusy,
-// FrameTime in
-// milliseconds, as a capture has them (then columns that are not known are passed over); what the frame did:
+// A capture (it has a column Application; experiments/captures/capture.h) gives the frames of its dominant swap chain that
+// have CPU work and GPU busy. Else columns in any order, unknown ones refused: measured times cpu_s, gpu_s, frame_s in
+// seconds, or CPUBusy, GPUBusy, FrameTime in milliseconds; what the frame did:
 // commands, draws,
 // polygons, vertices, texture_bytes, pixels, pixels_squared (sum of squared pixels of its commands), visibility_tests,
 // operations, logic_s. The model is the closed form of MODEL section 2 (sim/closed_form.h):

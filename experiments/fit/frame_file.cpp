@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "experiments/captures/capture.h"
 #include "experiments/csv_row.h"
 #include "experiments/fit/fit.h"
 #include "scenes/csv.h"
@@ -35,50 +36,50 @@ std::vector<std::string> header_of(const std::string& path) {
   return names;
 }
 
-// A capture has many columns of its own; in another file an unknown column is a mistake.
-std::vector<std::string> passed_over(const std::vector<std::string>& header) {
-  const auto known = [](std::span<const std::string_view> names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  std::vector<std::string> others;
-  bool capture = false;
-  for (const std::string& name : header) {
-    capture = capture || known(kCaptureNames, name);
-    if (!known(kCaptureNames, name) && !known(kOwnNames, name)) others.push_back(name);
+// Sums of successive rows, as their means.
+class Windows {
+ public:
+  explicit Windows(int window, FrameRows& rows) : window_(window), rows_(rows) {}
+
+  void add(std::span<const double> values) {
+    for (std::size_t c = 0; c < kMeasuredColumns; ++c) sums_[c].add(values[c]);
+    if (++held_ < window_) return;
+    FrameRow row{.value = std::vector<double>(kMeasuredColumns, 0.0)};
+    for (std::size_t c = 0; c < kMeasuredColumns; ++c) row.value[c] = sums_[c].value() / window_;
+    rows_.rows.push_back(std::move(row));
+    sums_ = {};
+    held_ = 0;
   }
-  return capture ? others : std::vector<std::string>{};
-}
+
+ private:
+  int window_, held_ = 0;
+  FrameRows& rows_;
+  std::array<CompensatedSum, kMeasuredColumns> sums_{};
+};
 
 class FrameReader {
  public:
-  FrameReader(const std::string& path, const std::vector<std::string>& others)
-      : columns_(names(others)), csv_(path, path, {}, columns_, {path, 1}) {}
+  explicit FrameReader(const std::string& path) : columns_(names()), csv_(path, path, {}, columns_, {path, 1}) {}
 
   FrameRows read(int window, const std::string& path) {
     FrameRows rows{.file = path, .rows = {}};
     for (std::size_t c = 0; c < kMeasuredColumns; ++c)
       rows.has[c] = csv_.has(c) || (c < 3 && csv_.has(kMeasuredColumns + c));
-    std::vector<CompensatedSum> sums(kMeasuredColumns);
-    int held = 0;
+    Windows windows(window, rows);
+    std::array<double, kMeasuredColumns> values{};
     while (csv_.next()) {
       for (std::size_t c = 0; c < kMeasuredColumns; ++c) {
-        if (rows.has[c]) sums[c].add(number(c));
+        if (rows.has[c]) values[c] = number(c);
       }
-      if (++held < window) continue;
-      FrameRow row{.value = std::vector<double>(kMeasuredColumns, 0.0)};
-      for (std::size_t c = 0; c < kMeasuredColumns; ++c) row.value[c] = sums[c].value() / window;
-      rows.rows.push_back(std::move(row));
-      sums.assign(kMeasuredColumns, {});
-      held = 0;
+      windows.add(values);
     }
     return rows;
   }
 
  private:
-  static std::vector<std::string_view> names(const std::vector<std::string>& others) {
+  static std::vector<std::string_view> names() {
     std::vector<std::string_view> names(kOwnNames.begin(), kOwnNames.end());
     names.insert(names.end(), kCaptureNames.begin(), kCaptureNames.end());
-    names.insert(names.end(), others.begin(), others.end());
     return names;
   }
 
@@ -96,12 +97,42 @@ class FrameReader {
   CsvReader csv_;
 };
 
+// Every capture names the application; no file of one's own need to.
+bool is_capture(const std::string& path) {
+  const std::vector<std::string> header = header_of(path);
+  return !header.empty() && (header.front().starts_with("//") ||
+                             std::find(header.begin(), header.end(), "Application") != header.end());
+}
+
+// Frames of the capture's dominant swap chain that have all times that the capture has at all.
+FrameRows read_captured(const std::string& path, int window) {
+  const Capture capture = load_capture(path);
+  FrameRows rows{.file = path, .rows = {}};
+  const bool cpu = !capture.cpu_column.empty(), gpu = !capture.gpu_column.empty();
+  if (!cpu || !gpu) {
+    throw InputError({path, 1}, fmt::format("this {} capture has no column of {}; a fit needs CPU work and GPU busy of each "
+                                            "frame, as PresentMon v2 and later have them",
+                                            kCaptureFamilyNames[static_cast<std::size_t>(capture.family)],
+                                            cpu ? "GPU busy" : "CPU work"));
+  }
+  rows.has[0] = rows.has[1] = rows.has[2] = true;
+  Windows windows(window, rows);
+  std::array<double, kMeasuredColumns> values{};
+  for (const CaptureFrame& frame : capture.frames) {
+    if (!frame.cpu_ms || !frame.gpu_ms || !(*frame.cpu_ms > 0) || !(*frame.gpu_ms > 0)) continue;
+    values[0] = *frame.cpu_ms * 1e-3;
+    values[1] = *frame.gpu_ms * 1e-3;
+    values[2] = frame.frame_ms * 1e-3;
+    windows.add(values);
+  }
+  return rows;
+}
+
 }  // namespace
 
 FrameRows read_frame_rows(const std::string& path, int window) {
   FRAMESIM_CHECK(window >= 1, fmt::format("window is {}", window));
-  const std::vector<std::string> others = passed_over(header_of(path));
-  return FrameReader(path, others).read(window, path);
+  return is_capture(path) ? read_captured(path, window) : FrameReader(path).read(window, path);
 }
 
 bool is_run_file(const std::string& path) {

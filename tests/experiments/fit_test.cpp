@@ -116,6 +116,17 @@ TEST_CASE("fit takes the overlap from a capture's columns and passes the others 
   CHECK(fit.constants[0].value == Approx(0.5).epsilon(1e-9));
 }
 
+TEST_CASE("fit takes the dominant swap chain of a capture, and refuses one that has no GPU busy") {
+  // The rows of b.exe would give s = 0; the frame without a GPU time is left out.
+  const MachineFit fit = fit_text(
+      "Application,SwapChainAddress,CPUBusy,GPUBusy,FrameTime\na.exe,0x1,4,10,12\nb.exe,0x2,4,10,10\n"
+      "a.exe,0x1,8,6,11\na.exe,0x1,8,NA,30\na.exe,0x1,20,10,25\n",
+      {});
+  CHECK(fit.constants[0].value == Approx(0.5).epsilon(1e-9));
+  CHECK(refusal([] { fit_text("Application,CPUBusy,FrameTime\na.exe,4,12\n"); }).find("no column of GPU busy") !=
+        std::string::npos);
+}
+
 TEST_CASE("a fitted profile written to a file loads with the same numbers") {
   const MachineFit fit = fit_text(rows(4, 0.02, 60));
   const TestFolder folder;
