@@ -69,6 +69,11 @@ small() { table "$1" "$2" --scenes street,graphicon-forest,auditorium --frames 4
 # Errors against 50 digits, in numbers only; the rows have bounds that must hold.
 accuracy() { "$1" stability --format csv >"$2"; }
 
+browser() {
+  install_packages chromium chromium-driver curl || return 77
+  sh tests/report/run.sh build/framesim
+}
+
 same() { cmp "$1" "$2"; }
 
 # all_tests FOLDER: every test case of FOLDER/framesim_tests, dealt to one process for each processor. Each process
@@ -97,7 +102,7 @@ sanitized_tests() {
 }
 
 packages=$BUILD_PACKAGES
-[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev libclang-rt-14-dev coinor-libcbc-dev chromium chromium-driver curl"
+[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev coinor-libcbc-dev"
 # shellcheck disable=SC2086
 stage "packages" install_packages $packages
 [ "$failed" -eq 0 ] || finish
@@ -115,7 +120,7 @@ stage "default comparison, 1 thread" table build/framesim "$out/jobs-1.csv" --jo
 stage "default comparison, 2 threads" table build/framesim "$out/jobs-2.csv" --jobs 2
 stage "1 and 2 threads: same bytes" same "$out/jobs-1.csv" "$out/jobs-2.csv"
 
-may_skip "report in a browser" sh tests/report/run.sh build/framesim
+may_skip "report in a browser" browser
 may_skip "sweep as a job array" sh tests/cluster/slurm.sh build/framesim
 stage "accuracy tables" accuracy build/framesim "$out/accuracy-g++.csv"
 
@@ -125,7 +130,6 @@ stage "g++ and clang++: same bytes" same "$out/jobs-2.csv" "$out/clang.csv"
 
 stage "accuracy tables, clang++" accuracy build-clang/framesim "$out/accuracy-clang.csv"
 stage "accuracy with g++ and clang++: same bytes" same "$out/accuracy-g++.csv" "$out/accuracy-clang.csv"
-stage "fuzzing, a short run" sh tests/fuzz/run.sh 10
 
 stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON \
   -DFRAMESIM_BENCHMARKS=OFF
