@@ -27,7 +27,7 @@ namespace framesim {
   X(double, planned_cost_s, "s", "estimated cost of the selection")                                        \
   X(double, benefit, "", "common benefit of the selection")                                                \
   X(double, finest_benefit, "", "common benefit if time did not matter: all finest, or coarser where more")  \
-  X(double, bound, "", "no selection within the budget has more benefit; NaN if it was not asked for")        \
+  X(double, bound, "", "most benefit within the drawing time if decisions took none; NaN if not asked for")     \
   X(double, coarsest_benefit, "", "... and that of everything at its coarsest")                            \
   X(std::int64_t, visibility_tests, "", "bounds tested")                                                   \
   X(std::int64_t, visible, "", "visible items")                                                            \
