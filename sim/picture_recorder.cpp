@@ -2,22 +2,15 @@
 
 #include <algorithm>
 
+#include "sim/stand_in.h"
 #include "sim/statistics.h"
 
 namespace framesim {
 namespace {
 
-// The rung of the stand-in ladder 1, 1/2, 1/4 ... that a resolution reaches, so that level switches of continuous and
-// discrete levels count the same thing.
-std::int16_t rung(double resolution, int rungs) {
-  int level = rungs - 1;
-  for (double x = resolution; x < 1 && level > 0; x *= 2) --level;
-  return static_cast<std::int16_t>(level);
-}
-
 std::int16_t level_code(const Workload& workload, const Selection& selection, std::size_t item) {
   if (selection.level[item] == kNotDrawn || workload.kind[item] != ItemKind::curve) return selection.level[item];
-  return rung(selection.resolution[item], workload.type_of(item).stand_in_levels);
+  return rung_of(selection.resolution[item], workload.type_of(item).stand_in_levels);
 }
 
 // Where a drawn item stands between its coarsest (0) and finest (1) choice.
