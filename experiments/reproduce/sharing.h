@@ -1,0 +1,42 @@
+// Zach et al. 2002, section 3.5 and appendix A: what it saves and loses that trees share a resolution.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "experiments/reproduce/reproduce.h"
+#include "policies/gradient/node_sums.h"
+
+namespace framesim {
+
+// How a loss is bounded, as mixed-gradient's parameter split-bound names it.
+struct SharingBound {
+  std::string_view name, meaning;
+  ShareBound bound;
+};
+inline constexpr std::array<SharingBound, 3> kSharingBounds = {
+    {{"spread", "exact", ShareBound::spread},
+     {"leaves", "C sqrt(X) (1 - 1/sqrt(n))", ShareBound::leaves},
+     {"printed", "algorithm 1 to the letter", ShareBound::printed}}};
+// Share of the trees' benefit that sharing may lose.
+inline constexpr std::array<double, 4> kSharingThetas = {0.01, 0.05, 0.2, 0.5};
+
+// One setting. Against the same run in which no trees share, with the same budgets, as decisions are free in both.
+struct SharingPoint {
+  std::size_t bound;       // in kSharingBounds
+  double theta;
+  double loss = 0;         // benefit lost over the trees' benefit without sharing: mean over frames ...
+  double worst_loss = 0;   // ... and of the worst frame
+  double variables = 0;    // a frame, at the beginning of the search
+  double operations = 0;   // a frame
+};
+struct SharingCurve {
+  double variables = 0, operations = 0;  // a frame, where no trees share
+  std::vector<SharingPoint> points;      // by bound, then theta
+};
+// `frames` of the flight over styria, 0 = all of it.
+SharingCurve sharing_curve(const ReproduceContext& context, double target_s, std::int64_t frames = 0);
+
+}  // namespace framesim
