@@ -91,6 +91,7 @@ void measure(SharingPoint& point, const FrameLooks& shared, const FrameLooks& ap
   point.worst_loss = losses.empty() ? 0 : *std::max_element(losses.begin(), losses.end());
   point.variables = mean(shared.variables);
   point.operations = shared.operations.mean();
+  point.operations_apart = apart.operations.mean();
 }
 
 }  // namespace
@@ -101,14 +102,20 @@ SharingCurve sharing_curve(const ReproduceContext& context, double target_s, std
     for (const double theta : kSharingThetas) curve.points.push_back({.bound = bound, .theta = theta});
   }
   const Scene scene = load_scene({"styria", {}, {"reproduce"}});
-  std::vector<FrameLooks> looks(curve.points.size() + 1);
+  Scene no_setup = scene;
+  no_setup.machine.algorithm[static_cast<std::size_t>(Algorithm::splats)].draw_s = 0;
+  const auto with = [&](bool setup) -> const Scene& { return setup ? scene : no_setup; };
+  const std::size_t points = curve.points.size();
+  std::vector<FrameLooks> looks(points + 2);  // the last two: nothing shared, without and with set-up
   parallel_for(looks.size(), context.jobs, [&](std::size_t i) {
-    looks[i] = look(scene, target_s, frames, i < curve.points.size() ? &curve.points[i] : nullptr);
+    const bool setup = i < points ? kSharingBounds[curve.points[i].bound].setup : i == points + 1;
+    looks[i] = look(with(setup), target_s, frames, i < points ? &curve.points[i] : nullptr);
   });
-  const FrameLooks& apart = looks.back();
-  curve.variables = mean(apart.variables);
-  curve.operations = apart.operations.mean();
-  for (std::size_t i = 0; i < curve.points.size(); ++i) measure(curve.points[i], looks[i], apart);
+  curve.variables = mean(looks[points + 1].variables);
+  curve.operations = looks[points + 1].operations.mean();
+  for (std::size_t i = 0; i < points; ++i) {
+    measure(curve.points[i], looks[i], looks[points + (kSharingBounds[curve.points[i].bound].setup ? 1 : 0)]);
+  }
   return curve;
 }
 
