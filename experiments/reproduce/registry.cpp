@@ -10,6 +10,7 @@ ReproducedDocument robin_hood_document();
 ReproducedDocument dong_document();
 ReproducedDocument funkhouser_document();
 ReproducedDocument zach_document();
+ReproducedDocument srgge_document();
 
 std::span<const ReproducedDocument> reproduced_documents() {
   static const std::vector<ReproducedDocument> kDocuments = {
@@ -17,6 +18,7 @@ std::span<const ReproducedDocument> reproduced_documents() {
       dong_document(),
       funkhouser_document(),
       zach_document(),
+      srgge_document(),
   };
   return kDocuments;
 }
