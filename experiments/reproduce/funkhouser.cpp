@@ -201,13 +201,12 @@ void decisions_overlap(const ReproduceContext& context, Reproduction& out) {
   std::array<SlowDecision, 3> list{{{0.1}, {0.5}, {2}}};
   run_slow_decisions(context, scene, free, list);
   for (const SlowDecision& slow : list) {
-    ReproducedRow row{
-        .figure = "section 6",
-        .item = fmt::format("decisions of {:.3g} ms, frames of {:.3g} ms", 1e3 * compute_mean(slow.result),
-                            1e3 * free.summary.mean_s),
-        .quantity = "frame time that they add",
-        .unit = "s",
-        .simulated = slow.result.summary.mean_s - free.summary.mean_s};
+    ReproducedRow row{.figure = "section 6",
+                      .item = fmt::format("decisions of {:.3g} ms, frames of {:.3g} ms",
+                                          1e3 * compute_mean(slow.result), 1e3 * free.summary.mean_s),
+                      .quantity = "frame time that they add",
+                      .unit = "s",
+                      .simulated = slow.result.summary.mean_s - free.summary.mean_s};
     if (slow.share < 0.5) row.target = ReproduceTarget{Kind::at_most, 1e-3 * free.summary.mean_s};
     if (slow.share > 1) row.target = ReproduceTarget{Kind::at_least, (slow.share - 1) * free.summary.mean_s};
     out.rows.push_back(std::move(row));
@@ -229,12 +228,16 @@ void reproduce_funkhouser(const ReproduceContext& context, Reproduction& out) {
   optimisation_is_flat(*algorithms[3], certified, out);
   decisions_overlap(context, out);
   out.remarks.push_back(
-      "Nothing is fitted: the paper prints neither coefficients nor floor plan nor models, scene auditorium and machine "
-      "vgx320 assume them. Table 1 is recalled: frame times within 50 %, compute times within 10 ms, and the order. Compute "
+      "Nothing is fitted: the paper prints neither coefficients nor floor plan nor models, scene auditorium and "
+      "machine "
+      "vgx320 assume them. Table 1 is recalled: frame times within 50 %, compute times within 10 ms, and the order. "
+      "Compute "
       "time is the decision's alone. Optimisation is the paper's incremental rule; benefit by size alone, as there.");
   out.remarks.push_back(
-      "A is frame 100, B the mean of frames 370 to 449, C the longest of 450 to 475. Flat: mean deviation and longest frame at "
-      "most 10 % off. Section 6: the operation's cost is scaled, budgets and so selections stay those of free decisions.");
+      "A is frame 100, B the mean of frames 370 to 449, C the longest of 450 to 475. Flat: mean deviation and longest "
+      "frame at "
+      "most 10 % off. Section 6: the operation's cost is scaled, budgets and so selections stay those of free "
+      "decisions.");
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ double tree_benefit(const Workload& workload, const Selection& selection) {
 double count_variables(const Workload& workload, const NodeSums& sums, const std::function<bool(std::size_t)>& shares) {
   double variables = 0;
   for (std::size_t i = 0; i < workload.size();) {
-    const bool variable = sums[i].curves > 0 && (workload.kind[i] == ItemKind::curve ||
-                                                  (workload.kind[i] == ItemKind::bundle && shares(i)));
+    const bool variable = sums[i].curves > 0 &&
+                          (workload.kind[i] == ItemKind::curve || (workload.kind[i] == ItemKind::bundle && shares(i)));
     variables += variable;
     i = variable && workload.hierarchical() ? workload.subtree_end[i] : i + 1;
   }

@@ -28,12 +28,12 @@ inline constexpr std::array<double, 4> kSharingThetas = {0.01, 0.05, 0.2, 0.5};
 
 // One setting. Against the same run in which no trees share, with the same budgets, as decisions are free in both.
 struct SharingPoint {
-  std::size_t bound;       // in kSharingBounds
+  std::size_t bound;  // in kSharingBounds
   double theta;
-  double loss = 0;         // benefit lost over the trees' benefit without sharing: mean over frames ...
-  double worst_loss = 0;   // ... and of the worst frame
-  double variables = 0;    // a frame, at the beginning of the search
-  double operations = 0;   // a frame
+  double loss = 0;              // benefit lost over the trees' benefit without sharing: mean over frames ...
+  double worst_loss = 0;        // ... and of the worst frame
+  double variables = 0;         // a frame, at the beginning of the search
+  double operations = 0;        // a frame
   double operations_apart = 0;  // a frame, where no trees share
 };
 struct SharingCurve {

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 
+#include "experiments/reproduce/frame_plot.h"
 #include "experiments/reproduce/frame_sums.h"
+#include "experiments/reproduce/pictures.h"
 #include "experiments/reproduce/scene_runs.h"
 #include "experiments/reproduce/stepped_run.h"
 #include "experiments/thread_pool.h"
@@ -143,9 +145,8 @@ void algorithm_1(const ReproduceContext& context, Reproduction& out) {
   for (std::size_t v = 0; v < kVariants.size(); ++v) list.push_back({.variant = v});
   const Scene scene = load_scene({"museum", {}, {"reproduce"}});
   parallel_for(list.size(), context.jobs, [&](std::size_t i) {
-    run_stepped(museum_run(list[i]), scene, [&](const Simulation& simulation, const FrameRecord& record) {
-      look(list[i], simulation, record);
-    });
+    run_stepped(museum_run(list[i]), scene,
+                [&](const Simulation& simulation, const FrameRecord& record) { look(list[i], simulation, record); });
   });
   for (const BudgetRun& run : list) budget_rows(run, out);
 }
@@ -184,13 +185,37 @@ void reproduce_srgge(const ReproduceContext& context, Reproduction& out) {
   out.remarks.push_back(
       "The report prints an algorithm and no figure; held: triangles drawn at most the budget in every frame "
       "whose coarsest levels fit; the rows are over those frames. As printed, what "
-      "is in front of the camera counts nothing, so whatever comes first is raised; a raise adds the new level's triangles and "
-      "keeps the old one's; there is no finest level, so the count goes up while nothing changes: the budget is spent in the "
-      "books and not on the screen. A lowering takes off the new level's triangles and keeps the old one's, so that from last "
+      "is in front of the camera counts nothing, so whatever comes first is raised; a raise adds the new level's "
+      "triangles and "
+      "keeps the old one's; there is no finest level, so the count goes up while nothing changes: the budget is spent "
+      "in the "
+      "books and not on the screen. A lowering takes off the new level's triangles and keeps the old one's, so that "
+      "from last "
       "frame's levels it ends over the budget. The loops end here, as every level has triangles to add or take off.");
 }
 
 }  // namespace
+
+// Triangles drawn over frames, under a budget that the coarsest levels always fit into.
+std::vector<Picture> srgge_pictures(const ReproduceContext&) {
+  constexpr std::array<std::string_view, kVariants.size()> kColours = {kRestrictedColour, "#999999", "#CC79A7"};
+  const Scene scene = load_scene({"museum", {}, {"reproduce"}});
+  FramePlot plot{.title = fmt::format("SRGGE 2020, algorithm 1 on the museum, budget {} triangles", kBudgets.back()),
+                 .y_title = "triangles drawn in thousands"};
+  for (std::size_t v = 0; v < kVariants.size(); ++v) {
+    FrameCurve curve{.title = std::string(kVariants[v].name),
+                     .colour = std::string(kColours[v]),
+                     .width = is_repaired(v) ? 2.0 : 1.2,
+                     .first_frame = 0};
+    run_stepped(museum_run({.variant = v, .triangles = kBudgets.back()}), scene,
+                [&](const Simulation& simulation, const FrameRecord&) {
+                  curve.values.push_back(1e-3 * triangles_drawn(simulation.workload(), simulation.selection()));
+                });
+    plot.curves.push_back(std::move(curve));
+  }
+  plot.lines.push_back({"budget", 1e-3 * static_cast<double>(kBudgets.back())});
+  return {{"srgge-triangles", frame_plot_script(plot)}};
+}
 
 ReproducedDocument srgge_document() {
   return {.name = "srgge",

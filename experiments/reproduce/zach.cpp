@@ -71,13 +71,12 @@ void figure_4(const ReproduceContext& context, Reproduction& out) {
 void sharing_rows(const ReproduceContext& context, Reproduction& out) {
   const SharingCurve curve = sharing_curve(context, kSharingTarget_s);
   for (const SharingPoint& point : curve.points) {
-    ReproducedRow row{
-        .figure = "section 3.5",
-        .item = fmt::format("theta {:g} %, {}", 100 * point.theta, kSharingBounds[point.bound].meaning),
-        .quantity = "benefit lost, worst frame",
-        .unit = "%",
-        .simulated = 100 * point.worst_loss,
-        .target = ReproduceTarget{Kind::at_most, 100 * point.theta}};
+    ReproducedRow row{.figure = "section 3.5",
+                      .item = fmt::format("theta {:g} %, {}", 100 * point.theta, kSharingBounds[point.bound].meaning),
+                      .quantity = "benefit lost, worst frame",
+                      .unit = "%",
+                      .simulated = 100 * point.worst_loss,
+                      .target = ReproduceTarget{Kind::at_most, 100 * point.theta}};
     out.rows.push_back(row);
     row.target.reset();
     row.quantity = "benefit lost, mean";
@@ -91,17 +90,21 @@ void sharing_rows(const ReproduceContext& context, Reproduction& out) {
     out.rows.push_back(std::move(row));
   }
   out.remarks.push_back(fmt::format(
-      "Section 3.5: along the optima (direction=multiplier), decisions free, so that budgets agree; against the same run in "
+      "Section 3.5: along the optima (direction=multiplier), decisions free, so that budgets agree; against the same "
+      "run in "
       "which no trees share, {:.0f} variables and {:.0f} operations a frame. Theta and losses are shares of the trees' "
-      "benefit. The bounds leave the set-up of a tree out of account: where trees have it, a bundle that shares pays it for all "
+      "benefit. The bounds leave the set-up of a tree out of account: where trees have it, a bundle that shares pays "
+      "it for all "
       "its trees or for none, and may lose more than the bound from b_i and c_i; without set-up that bound holds.",
       curve.variables, curve.operations));
 }
 
 void reproduce_zach(const ReproduceContext& context, Reproduction& out) {
   out.remarks.push_back(
-      "The section on results is missing from the text: budgets are printed, what became of them is not. Held: the 95th "
-      "percentile at most 10 % over. Figure 4 runs the printed direction (the gradient), theta 5 % of the exact bound.");
+      "The section on results is missing from the text: budgets are printed, what became of them is not. Held: the "
+      "95th "
+      "percentile at most 10 % over. Figure 4 runs the printed direction (the gradient), theta 5 % of the exact "
+      "bound.");
   figure_4(context, out);
   sharing_rows(context, out);
 }
