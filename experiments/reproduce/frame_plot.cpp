@@ -10,6 +10,8 @@
 namespace framesim {
 namespace {
 
+constexpr double kLeastHalfMark = 2;  // frames: a narrower mark is hardly seen
+
 double largest(const FramePlot& plot) {
   double value = 0;
   for (const FrameCurve& curve : plot.curves) {
@@ -55,12 +57,14 @@ std::string panel(const FramePlot& plot, std::string_view prefix) {
       fmt::format("unset label\nunset object\nset title {} noenhanced\nset xlabel 'frame'\nset ylabel {}\n",
                   gnuplot_string(plot.title), gnuplot_string(plot.y_title));
   text += fmt::format("set yrange [0:{:.6g}]\n", top);
+  bool darker = false;  // so that marks side by side are two
   for (const FrameMark& mark : plot.marks) {
+    const double middle = (mark.first + mark.last) / 2, half = std::max((mark.last - mark.first) / 2, kLeastHalfMark);
     text += fmt::format(
-        "set object rectangle from first {0:g}, graph 0 to first {1:g}, graph 1 behind fillcolor rgb '#eeeeee' "
-        "fillstyle "
-        "solid 1 border lc rgb '#eeeeee'\nset label {2} at first {3:g}, graph 0.95 center\n",
-        mark.first, mark.last, gnuplot_string(mark.name), (mark.first + mark.last) / 2);
+        "set object rectangle from first {0:g}, graph 0 to first {1:g}, graph 1 behind fillcolor rgb '{2}' "
+        "fillstyle solid 1 noborder\nset label {3} at first {4:g}, graph 0.94 center\n",
+        middle - half, middle + half, darker ? "#d4d4d4" : "#ececec", gnuplot_string(mark.name), middle);
+    darker = !darker;
   }
   return text + curves(plot, prefix);
 }
@@ -86,14 +90,14 @@ std::string frame_plot_script(const FramePlot& plot) {
 
 std::string frame_panels_script(const std::string& title, std::span<const FramePlot> panels) {
   const std::size_t rows = (panels.size() + 1) / 2;
-  std::string text = fmt::format("set terminal svg size 1100,{} font 'sans,13' background 'white'\n", 90 + 300 * rows);
+  std::string text = fmt::format("set terminal svg size 1100,{} font 'sans,13' background 'white'\n", 120 + 320 * rows);
   for (std::size_t p = 0; p < panels.size(); ++p) text += data(panels[p], fmt::format("panel{}curve", p));
-  text += fmt::format("set multiplot layout {},2 title {} noenhanced margins 0.08,0.98,0.14,0.88 spacing 0.09,0.16\n",
+  text += fmt::format("set multiplot layout {},2 title {} noenhanced margins 0.08,0.98,0.16,0.89 spacing 0.09,0.17\n",
                       rows, gnuplot_string(title));
   text += kFrame;
   for (std::size_t p = 0; p < panels.size(); ++p) {
     text += p + 1 == panels.size()
-                ? "set key at screen 0.5, screen 0.02 center bottom horizontal samplen 3 noenhanced\n"
+                ? "set key at screen 0.5, screen 0.015 center bottom horizontal maxrows 1 samplen 3 noenhanced\n"
                 : "unset key\n";
     text += panel(panels[p], fmt::format("panel{}curve", p));
   }

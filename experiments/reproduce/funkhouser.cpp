@@ -188,7 +188,9 @@ void run_slow_decisions(const ReproduceContext& context, const Scene& scene, con
   parallel_for(list.size(), context.jobs, [&](std::size_t i) {
     Scene slower = scene;
     slower.machine.operation_s = list[i].share * free.summary.mean_s / operations;
-    list[i].result = run_with_budgets(auditorium_run(kAuditoriumAlgorithms[3]), slower, budgets_s);
+    RunSpec spec = auditorium_run(kAuditoriumAlgorithms[3]);
+    spec.frames = context.frames;
+    list[i].result = run_with_budgets(spec, slower, budgets_s);
   });
 }
 
@@ -196,6 +198,7 @@ void decisions_overlap(const ReproduceContext& context, Reproduction& out) {
   RunSpec spec = auditorium_run(kAuditoriumAlgorithms[3]);
   const Scene scene = load_scene(spec.scene);
   spec.free_decisions = true;
+  spec.frames = context.frames;
   const RunResult free = run(spec, scene);
   // The longest decision is some twice the mean: at a tenth all are shorter than the frame before, at twice it none are.
   std::array<SlowDecision, 3> list{{{0.1}, {0.5}, {2}}};
@@ -229,15 +232,13 @@ void reproduce_funkhouser(const ReproduceContext& context, Reproduction& out) {
   decisions_overlap(context, out);
   out.remarks.push_back(
       "Nothing is fitted: the paper prints neither coefficients nor floor plan nor models, scene auditorium and "
-      "machine "
-      "vgx320 assume them. Table 1 is recalled: frame times within 50 %, compute times within 10 ms, and the order. "
-      "Compute "
-      "time is the decision's alone. Optimisation is the paper's incremental rule; benefit by size alone, as there.");
+      "machine vgx320 assume them. Table 1 is recalled: frame times within 50 %, compute times within 10 ms, and the "
+      "order. Compute time is the decision's alone. Optimisation is the paper's incremental rule; benefit by size "
+      "alone, as there.");
   out.remarks.push_back(
       "A is frame 100, B the mean of frames 370 to 449, C the longest of 450 to 475. Flat: mean deviation and longest "
-      "frame at "
-      "most 10 % off. Section 6: the operation's cost is scaled, budgets and so selections stay those of free "
-      "decisions.");
+      "frame at most 10 % off. Section 6: the operation's cost is scaled, budgets and so selections stay those of "
+      "free decisions.");
 }
 
 }  // namespace

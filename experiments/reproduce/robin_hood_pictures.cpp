@@ -85,8 +85,9 @@ Primitives primitives_drawn(const Simulation& simulation) {
   return drawn;
 }
 
-Picture figure_6() {
-  const RunSpec spec = robin_hood_levels_run();
+Picture figure_6(const ReproduceContext& context) {
+  RunSpec spec = robin_hood_levels_run();
+  spec.frames = context.frames;
   FrameCurve triangles{.title = "triangles", .colour = "#000000", .width = 1.6, .first_frame = 0};
   FrameCurve lines{.title = "lines", .colour = "#0072B2", .width = 1.6, .first_frame = 0};
   FrameCurve points{.title = "points", .colour = "#009E73", .width = 1.6, .first_frame = 0};
@@ -113,7 +114,7 @@ std::vector<Picture> robin_hood_pictures(const ReproduceContext& context) {
   levels_unrestricted.policy = parse_spec("full-detail", {"reproduce"});
   const std::size_t unrestricted = runs.add(levels_unrestricted);
   runs.run();
-  return {path_picture(runs, linear, 3), path_picture(runs, zigzag, 4), figure_6(),
+  return {path_picture(runs, linear, 3), path_picture(runs, zigzag, 4), figure_6(context),
           figure_7(runs, unrestricted, restricted)};
 }
 

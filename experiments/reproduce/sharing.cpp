@@ -96,7 +96,7 @@ void measure(SharingPoint& point, const FrameLooks& shared, const FrameLooks& ap
 
 }  // namespace
 
-SharingCurve sharing_curve(const ReproduceContext& context, double target_s, std::int64_t frames) {
+SharingCurve sharing_curve(const ReproduceContext& context, double target_s) {
   SharingCurve curve;
   for (std::size_t bound = 0; bound < kSharingBounds.size(); ++bound) {
     for (const double theta : kSharingThetas) curve.points.push_back({.bound = bound, .theta = theta});
@@ -109,7 +109,7 @@ SharingCurve sharing_curve(const ReproduceContext& context, double target_s, std
   std::vector<FrameLooks> looks(points + 2);  // the last two: nothing shared, without and with set-up
   parallel_for(looks.size(), context.jobs, [&](std::size_t i) {
     const bool setup = i < points ? kSharingBounds[curve.points[i].bound].setup : i == points + 1;
-    looks[i] = look(with(setup), target_s, frames, i < points ? &curve.points[i] : nullptr);
+    looks[i] = look(with(setup), target_s, context.frames, i < points ? &curve.points[i] : nullptr);
   });
   curve.variables = mean(looks[points + 1].variables);
   curve.operations = looks[points + 1].operations.mean();

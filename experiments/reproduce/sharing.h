@@ -40,7 +40,6 @@ struct SharingCurve {
   double variables = 0, operations = 0;  // a frame, where no trees share and trees cost set-up
   std::vector<SharingPoint> points;      // by bound, then theta
 };
-// `frames` of the flight over styria, 0 = all of it.
-SharingCurve sharing_curve(const ReproduceContext& context, double target_s, std::int64_t frames = 0);
+SharingCurve sharing_curve(const ReproduceContext& context, double target_s);
 
 }  // namespace framesim

@@ -105,11 +105,13 @@ void look(BudgetRun& run, const Simulation& simulation, const FrameRecord& recor
   run.near_coarsest.add(near_at_coarsest(workload, simulation.selection()));
 }
 
-RunSpec museum_run(const BudgetRun& run) {
-  return scene_run("museum",
-                   fmt::format("contribution-halving:triangles={},iterations={},{}", run.triangles, kCap,
-                               kVariants[run.variant].settings),
-                   run.target_s);
+RunSpec museum_run(const BudgetRun& run, std::int64_t frames = 0) {
+  RunSpec spec = scene_run("museum",
+                           fmt::format("contribution-halving:triangles={},iterations={},{}", run.triangles, kCap,
+                                       kVariants[run.variant].settings),
+                           run.target_s);
+  spec.frames = frames;
+  return spec;
 }
 
 std::string budget_name(const BudgetRun& run) {
@@ -145,7 +147,7 @@ void algorithm_1(const ReproduceContext& context, Reproduction& out) {
   for (std::size_t v = 0; v < kVariants.size(); ++v) list.push_back({.variant = v});
   const Scene scene = load_scene({"museum", {}, {"reproduce"}});
   parallel_for(list.size(), context.jobs, [&](std::size_t i) {
-    run_stepped(museum_run(list[i]), scene,
+    run_stepped(museum_run(list[i], context.frames), scene,
                 [&](const Simulation& simulation, const FrameRecord& record) { look(list[i], simulation, record); });
   });
   for (const BudgetRun& run : list) budget_rows(run, out);
@@ -183,21 +185,20 @@ void reproduce_srgge(const ReproduceContext& context, Reproduction& out) {
   algorithm_1(context, out);
   frame_times(context, out);
   out.remarks.push_back(
-      "The report prints an algorithm and no figure; held: triangles drawn at most the budget in every frame "
-      "whose coarsest levels fit; the rows are over those frames. As printed, what "
-      "is in front of the camera counts nothing, so whatever comes first is raised; a raise adds the new level's "
-      "triangles and "
-      "keeps the old one's; there is no finest level, so the count goes up while nothing changes: the budget is spent "
-      "in the "
-      "books and not on the screen. A lowering takes off the new level's triangles and keeps the old one's, so that "
-      "from last "
-      "frame's levels it ends over the budget. The loops end here, as every level has triangles to add or take off.");
+      "The report prints an algorithm and no figure; held: triangles drawn at most the budget in every frame whose "
+      "coarsest levels fit; the rows are over those frames.");
+  out.remarks.push_back(
+      "As printed, what is in front of the camera counts nothing, so whatever comes first is raised; a raise adds the "
+      "new level's triangles and keeps the old one's; there is no finest level, so the count goes up while nothing "
+      "changes: the budget is spent in the books and not on the screen. A lowering takes off the new level's "
+      "triangles and keeps the old one's, so that from last frame's levels it ends over the budget. The loops end "
+      "here, as every level has triangles to add or take off.");
 }
 
 }  // namespace
 
 // Triangles drawn over frames, under a budget that the coarsest levels always fit into.
-std::vector<Picture> srgge_pictures(const ReproduceContext&) {
+std::vector<Picture> srgge_pictures(const ReproduceContext& context) {
   constexpr std::array<std::string_view, kVariants.size()> kColours = {kRestrictedColour, "#999999", "#CC79A7"};
   const Scene scene = load_scene({"museum", {}, {"reproduce"}});
   FramePlot plot{.title = fmt::format("SRGGE 2020, algorithm 1 on the museum, budget {} triangles", kBudgets.back()),
@@ -207,7 +208,7 @@ std::vector<Picture> srgge_pictures(const ReproduceContext&) {
                      .colour = std::string(kColours[v]),
                      .width = is_repaired(v) ? 2.0 : 1.2,
                      .first_frame = 0};
-    run_stepped(museum_run({.variant = v, .triangles = kBudgets.back()}), scene,
+    run_stepped(museum_run({.variant = v, .triangles = kBudgets.back()}, context.frames), scene,
                 [&](const Simulation& simulation, const FrameRecord&) {
                   curve.values.push_back(1e-3 * triangles_drawn(simulation.workload(), simulation.selection()));
                 });

@@ -34,40 +34,44 @@ Picture figure_4(const ReproduceContext& context) {
   return {"zach-figure-4", frame_plot_script(plot)};
 }
 
-// Loss in per cent, operations, hollow (0: the loss is a loss), theta.
+// Columns: loss in per cent, operations, gnuplot's point type (7 filled; 6 hollow: no loss, drawn at the floor), theta.
 std::string points(const SharingCurve& curve, std::size_t bound) {
   std::string text = fmt::format("$bound{} << EOD\n", bound);
   for (const SharingPoint& point : curve.points) {
     if (point.bound != bound) continue;
     const double loss = 100 * point.loss;
-    text += fmt::format("{:.6g} {:.6g} {} '{:g} %'\n", std::max(loss, kFloor_percent), point.operations,
-                        loss > kFloor_percent ? 0 : 1, 100 * point.theta);
+    text += fmt::format("{:.6g} {:.6g} {} \"{:g} %\"\n", std::max(loss, kFloor_percent), point.operations,
+                        loss > kFloor_percent ? 7 : 6, 100 * point.theta);
   }
   return text + "EOD\n";
 }
 
+// Curve and points. The thetas stand beside the first and the last curve only: those between lie too close together.
+std::string sharing_curve_script(std::size_t bound) {
+  constexpr std::array<std::string_view, kSharingBounds.size()> kColours = {"#0072B2", "#B8860B", "#CC0000", "#009E73"};
+  const std::string name = fmt::format("$bound{}", bound);
+  std::string script =
+      fmt::format("{} using 1:2 with lines lw 1.6 lc rgb '{}' title {}, \\\n", name, kColours[bound],
+                  gnuplot_string("theta: " + std::string(kSharingBounds[bound].meaning))) +
+      fmt::format("{} using 1:2:3 with points pt variable ps 0.8 lc rgb '{}' notitle, \\\n", name, kColours[bound]);
+  const bool last = bound + 1 == kSharingBounds.size();
+  if (bound > 0 && !last) return script;
+  return script + fmt::format("{} using 1:2:4 with labels offset 0,{:g} font ',11' tc rgb '{}' notitle, \\\n", name,
+                              last ? -1.1 : 1, kColours[bound]);
+}
+
 Picture sharing(const ReproduceContext& context) {
-  constexpr std::array<std::string_view, kSharingBounds.size()> kColours = {"#0072B2", "#E69F00", "#CC0000", "#009E73"};
   const SharingCurve curve = sharing_curve(context, kTarget_s);
+  double least = curve.operations;
+  for (const SharingPoint& point : curve.points) least = std::min(least, point.operations);
   std::string script = "set terminal svg size 1100,560 font 'sans,14' background 'white'\n";
   for (std::size_t b = 0; b < kSharingBounds.size(); ++b) script += points(curve, b);
-  script +=
-      "set title 'Zach et al. 2002, section 3.5: what sharing a resolution saves and loses, styria, 100 ms'\n"
-      "set xlabel 'benefit lost in % of the trees'' benefit, mean over frames'\nset ylabel 'operations a frame'\n"
-      "set logscale xy\nset border 3\nset tics nomirror out\nset grid lc rgb '#dddddd'\nset rmargin 40\nset offsets "
-      "graph "
-      "0.05, graph 0.05, graph 0.1, graph 0.1\nset key at graph 1.02, graph 1 left top Left reverse samplen 2 "
-      "noenhanced\n"
-      "plot ";
-  for (std::size_t b = 0; b < kSharingBounds.size(); ++b) {
-    script += fmt::format(
-        "$bound{0} using 1:2 with lines lw 1.6 lc rgb '{1}' title {2}, \\\n$bound{0} using 1:2:($3 > 0 ? 6 : 7) with "
-        "points "
-        "pt variable ps 0.8 lc rgb '{1}' notitle, \\\n$bound{0} using 1:2:4 with labels offset 0,0.8 font ',11' tc rgb "
-        "'{1}' "
-        "notitle, \\\n",
-        b, kColours[b], gnuplot_string("theta by " + std::string(kSharingBounds[b].meaning)));
-  }
+  script += "set title 'Zach et al. 2002, section 3.5: what sharing a resolution saves and loses, styria, 100 ms'\n";
+  script += "set xlabel 'benefit lost in % of the trees'' benefit, mean over frames'\nset ylabel 'operations a frame'\n";
+  script += fmt::format("set logscale xy\nset yrange [{:.6g}:{:.6g}]\n", least / 2, 2 * curve.operations);
+  script += "set border 3\nset tics nomirror out\nset grid lc rgb '#dddddd'\nset rmargin 34\n";
+  script += "set key at graph 1.02, graph 1 left top Left reverse samplen 2 noenhanced\nplot ";
+  for (std::size_t b = 0; b < kSharingBounds.size(); ++b) script += sharing_curve_script(b);
   script +=
       fmt::format("{:.6g} with lines lw 1.3 dt 2 lc rgb 'black' title 'no sharing, with set-up'\n", curve.operations);
   return {"zach-sharing", script};
