@@ -18,7 +18,6 @@ namespace {
 constexpr std::string_view kMachine = "graphicon2005-fitted";
 constexpr std::string_view kEstimator = "table";  // the paper's own benchmark, section 4
 constexpr std::string_view kPlain = "robin-hood:levels=false,planning=paper";
-constexpr std::string_view kWithLevels = "robin-hood:value=11,planning=paper";
 constexpr ReproduceTarget kMeanTarget{ReproduceTarget::Kind::relative, 0.02};
 constexpr ReproduceTarget kErrorTarget{ReproduceTarget::Kind::absolute, 0.02};
 
@@ -192,15 +191,11 @@ double unspent(const RunResult& result) {
   return sum / static_cast<double>(result.records.size());
 }
 
-std::string levels_scene(const PublishedTable& table) {
-  return fmt::format("path={},representation=view-levels", table.text(0, "path"));
-}
-
 void section_72(SceneRuns& runs, Reproduction& out) {
   const PublishedTable table("robin_hood_levels");
   const double target_s = table.number(0, "target_s");
-  const std::string scene = levels_scene(table);
-  const std::size_t value_11 = runs.add(forest_run(scene, kWithLevels, target_s));
+  const std::string scene = fmt::format("path={},representation=view-levels", table.text(0, "path"));
+  const std::size_t value_11 = runs.add(forest_run(scene, "robin-hood:value=11,planning=paper", target_s));
   const std::size_t value_8 = runs.add(forest_run(scene, "robin-hood:value=8,planning=paper", target_s));
   const std::size_t certified = runs.add(forest_run(scene, "certified", target_s));
   runs.run();
@@ -289,7 +284,8 @@ RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy,
 std::string_view robin_hood_plain_policy() { return kPlain; }
 RunSpec robin_hood_levels_run() {
   const PublishedTable table("robin_hood_levels");
-  return forest_run(levels_scene(table), kWithLevels, table.number(0, "target_s"));
+  return forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")),
+                    "robin-hood:value=11,planning=paper", table.number(0, "target_s"));
 }
 
 ReproducedDocument robin_hood_document() {

@@ -40,6 +40,8 @@ struct SharingCurve {
   double variables = 0, operations = 0;  // a frame, where no trees share and trees cost set-up
   std::vector<SharingPoint> points;      // by bound, then theta
 };
+// The first half of the flight over styria, as it takes eighteen runs.
+inline constexpr std::int64_t kSharingFrames = 75;
 SharingCurve sharing_curve(const ReproduceContext& context, double target_s);
 
 }  // namespace framesim
