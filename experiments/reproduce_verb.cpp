@@ -77,7 +77,8 @@ void add_reproduce(CLI::App& app, Session& session) {
   verb->add_option("--format", options->format, "table (for people), csv or markdown")
       ->type_name("FORM")
       ->capture_default_str();
-  verb->add_option("--plot", options->plot_folder, "Write the papers' figures, from our runs (SVG), to this folder; needs gnuplot")
+  verb->add_option("--plot", options->plot_folder,
+                   "Write the papers' figures, from our runs (SVG), to this folder; needs gnuplot")
       ->type_name("DIR");
   add_jobs_option(*verb, options->jobs);
   add_quiet_option(*verb, session.quiet);

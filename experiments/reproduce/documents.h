@@ -8,8 +8,8 @@
 
 namespace framesim {
 
-// Robin Hood 2005: graphicon-forest with these settings ("path=linear") on the fitted machine, under any policy; the policy
-// of section 7.1 (no levels of detail); and the run of section 7.2 (levels of detail, figures 6 and 7).
+// Robin Hood 2005: graphicon-forest with these settings ("path=linear") on the fitted machine, under any policy; the
+// policy of section 7.1 (no levels of detail); and the run of section 7.2 (levels of detail, figures 6 and 7).
 RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s);
 std::string_view robin_hood_plain_policy();
 RunSpec robin_hood_levels_run();

@@ -18,7 +18,8 @@ struct Picture {
 // Runs what the pictures of `document` need and draws them. Every document has at least one.
 std::vector<Picture> reproduced_pictures(const ReproducedDocument& document, const ReproduceContext& context);
 
-// Draws them into `folder`, which must exist. Returns the paths in the order written. Throws UsageError without gnuplot.
+// Draws them into `folder`, which must exist. Returns the paths in the order written. Throws UsageError without
+// gnuplot.
 std::vector<std::string> write_pictures(std::span<const Picture> pictures, const std::string& folder);
 
 }  // namespace framesim

@@ -33,7 +33,8 @@ PathRuns add_path(SceneRuns& runs, const std::string& path) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.text(row, "path") != path) continue;
     const double target_s = table.number(row, "target_s");
-    list.restricted.push_back({target_s, runs.add(robin_hood_run("path=" + path, robin_hood_plain_policy(), target_s))});
+    const RunSpec spec = robin_hood_run("path=" + path, robin_hood_plain_policy(), target_s);
+    list.restricted.push_back({target_s, runs.add(spec)});
   }
   return list;
 }

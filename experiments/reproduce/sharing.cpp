@@ -105,12 +105,11 @@ SharingCurve sharing_curve(const ReproduceContext& context, double target_s) {
   Scene no_setup = scene;
   no_setup.machine.algorithm[static_cast<std::size_t>(Algorithm::splats)].draw_s = 0;
   const auto with = [&](bool setup) -> const Scene& { return setup ? scene : no_setup; };
-  const std::int64_t frames = context.frames > 0 ? std::min(context.frames, kSharingFrames) : kSharingFrames;
   const std::size_t points = curve.points.size();
   std::vector<FrameLooks> looks(points + 2);  // the last two: nothing shared, without and with set-up
   parallel_for(looks.size(), context.jobs, [&](std::size_t i) {
     const bool setup = i < points ? kSharingBounds[curve.points[i].bound].setup : i == points + 1;
-    looks[i] = look(with(setup), target_s, frames, i < points ? &curve.points[i] : nullptr);
+    looks[i] = look(with(setup), target_s, context.frames, i < points ? &curve.points[i] : nullptr);
   });
   curve.variables = mean(looks[points + 1].variables);
   curve.operations = looks[points + 1].operations.mean();

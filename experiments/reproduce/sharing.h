@@ -11,8 +11,8 @@
 
 namespace framesim {
 
-// How a loss is bounded, as mixed-gradient's parameter split-bound names it, and whether trees cost set-up as they do: the
-// bounds are derived without.
+// How a loss is bounded, as mixed-gradient's parameter split-bound names it, and whether trees cost set-up as they do:
+// the bounds are derived without.
 struct SharingBound {
   std::string_view name, meaning;
   ShareBound bound;
@@ -40,8 +40,6 @@ struct SharingCurve {
   double variables = 0, operations = 0;  // a frame, where no trees share and trees cost set-up
   std::vector<SharingPoint> points;      // by bound, then theta
 };
-// The first half of the flight over styria, as it takes eighteen runs.
-inline constexpr std::int64_t kSharingFrames = 75;
 SharingCurve sharing_curve(const ReproduceContext& context, double target_s);
 
 }  // namespace framesim

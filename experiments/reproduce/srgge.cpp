@@ -1,7 +1,7 @@
 // SRGGE project 2, 2020: the triangle budget of algorithm 1, repaired and as printed, on the museum.
 //
-// The report prints the algorithm and no figure. Fitted: nothing. What is held against what: triangles drawn against the
-// budget, frame by frame.
+// The report prints the algorithm and no figure. Fitted: nothing. What is held against what: triangles drawn against
+// the budget, frame by frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +46,8 @@ struct BudgetRun {
   Moments near_coarsest;     // share of the nearer half of the statues that are drawn at their coarsest level
 };
 
-// What the policy makes of a budget in seconds: at the mean estimated cost of a triangle of what is in view at its finest.
+// What the policy makes of a budget in seconds: at the mean estimated cost of a triangle of what is in view at its
+// finest.
 double triangle_budget(const BudgetRun& run, const Workload& workload, double budget_s) {
   if (run.triangles > 0) return static_cast<double>(run.triangles);
   double cost_s = 0, triangles = 0;

@@ -90,12 +90,12 @@ void sharing_rows(const ReproduceContext& context, Reproduction& out) {
     out.rows.push_back(std::move(row));
   }
   out.remarks.push_back(fmt::format(
-      "Section 3.5: the first {} frames, along the optima (direction=multiplier), decisions free, so that budgets "
-      "agree; against the same run in which no trees share, {:.0f} variables and {:.0f} operations a frame. Theta and "
-      "losses are shares of the trees' benefit. The bounds leave the set-up of a tree out of account: where trees "
-      "have it, those of a bundle that shares pass their knee together or not at all, and may lose more than the "
-      "bound from b_i and c_i; without set-up that bound holds.",
-      kSharingFrames, curve.variables, curve.operations));
+      "Section 3.5: along the optima (direction=multiplier), decisions free, so that budgets agree; against the same "
+      "run in which no trees share, {:.0f} variables and {:.0f} operations a frame. Theta and losses are shares of "
+      "the trees' benefit. The bounds leave the set-up of a tree out of account: where trees have it, those of a "
+      "bundle that shares pass their knee together or not at all, and may lose more than the bound from b_i and c_i; "
+      "without set-up that bound holds.",
+      curve.variables, curve.operations));
 }
 
 void reproduce_zach(const ReproduceContext& context, Reproduction& out) {

@@ -67,7 +67,8 @@ Picture sharing(const ReproduceContext& context) {
   std::string script = "set terminal svg size 1100,560 font 'sans,14' background 'white'\n";
   for (std::size_t b = 0; b < kSharingBounds.size(); ++b) script += points(curve, b);
   script += "set title 'Zach et al. 2002, section 3.5: what sharing a resolution saves and loses, styria, 100 ms'\n";
-  script += "set xlabel 'benefit lost in % of the trees'' benefit, mean over frames'\nset ylabel 'operations a frame'\n";
+  script += "set xlabel 'benefit lost in % of the trees'' benefit, mean over frames'\n";
+  script += "set ylabel 'operations a frame'\n";
   script += fmt::format("set logscale xy\nset yrange [{:.6g}:{:.6g}]\n", least / 2, 2 * curve.operations);
   script += "set border 3\nset tics nomirror out\nset grid lc rgb '#dddddd'\nset rmargin 34\n";
   script += "set key at graph 1.02, graph 1 left top Left reverse samplen 2 noenhanced\nplot ";

@@ -8,8 +8,8 @@
 
 namespace framesim {
 
-// Without set-up benefit is sum b_i sqrt(x_i) and cost sum c_i x_i, as the bounds assume: there the bound from b_i and c_i
-// must hold. A larger theta never takes more variables.
+// Without set-up benefit is sum b_i sqrt(x_i) and cost sum c_i x_i, as the bounds assume: there the bound from b_i and
+// c_i must hold. A larger theta never takes more variables.
 TEST_CASE("reproduce zach: every budget and theta has its rows, and without set-up sharing loses at most theta") {
   const Reproduction document = reproduce_by_name("zach", kSlowBuild ? 2 : 6);
   check_rows(document);
@@ -33,8 +33,8 @@ TEST_CASE("reproduce zach: every budget and theta has its rows, and without set-
   }
 }
 
-// Two curves of cost 1 with b = 3 and 1. With money M apart: sqrt(M (9 + 1)) = 3.162 sqrt(M); together x = M/2 for both:
-// 4 sqrt(M/2) = 2.828 sqrt(M). Lost: 1 - 2.828/3.162 = 0.1056, whatever M is.
+// Two curves of cost 1 with b = 3 and 1. With money M apart: sqrt(M (9 + 1)) = 3.162 sqrt(M); together x = M/2 for
+// both: 4 sqrt(M/2) = 2.828 sqrt(M). Lost: 1 - 2.828/3.162 = 0.1056, whatever M is.
 TEST_CASE("reproduce zach: theta by hand for two curves") {
   testing::TestWorkload w;
   const auto bundle = w.add_bundle();
