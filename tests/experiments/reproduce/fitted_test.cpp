@@ -69,8 +69,8 @@ double squares(MachineProfile machine, const std::string& constant, double facto
   const std::size_t c = find_constant(constant);
   set_constant(machine, c, constant_of(machine, c) * factor);
   double sum = 0;
-  for (const MeasuredRun& measured : read_measured_runs(
-           in_sources("experiments/reproduce/fit/robin-hood-linear.csv"), read_shared({}, {"test"}))) {
+  for (const MeasuredRun& measured :
+       read_measured_runs(in_sources("experiments/reproduce/fit/robin-hood-linear.csv"), read_shared({}, {"test"}))) {
     const auto scene = std::make_shared<Scene>(load_scene(measured.spec.scene));
     scene->machine = machine;
     RunSpec spec = measured.spec;
@@ -83,7 +83,7 @@ double squares(MachineProfile machine, const std::string& constant, double facto
 
 }  // namespace
 
-// Two of the four: fits of two devices take a second each.
+// Each takes a second; the sanitizers have time for one.
 TEST_CASE("reproduce: the fit that a profile names finds its constants again, to the digits printed there") {
   check_fitted("ipad");
 #if !defined(__SANITIZE_ADDRESS__)
@@ -91,8 +91,8 @@ TEST_CASE("reproduce: the fit that a profile names finds its constants again, to
 #endif
 }
 
-// The whole fit of Robin Hood's machine takes a minute. What it found must at least be where no step of 4 % of any of its
-// constants fits the linear rows better: a constant moved by hand would show.
+// The whole fit of Robin Hood's machine takes a minute. What it found must at least be where no step of 4 % of any of
+// its constants fits the linear rows better: a constant moved by hand would show.
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_CASE("reproduce: no neighbour of Robin Hood's fitted machine fits its linear rows better") {
   const MachineProfile fitted = load_machine(parse_spec("graphicon2005-fitted"));
