@@ -27,9 +27,9 @@ constexpr std::array<std::string_view, 4> kDevices = {"computer1", "computer2", 
 RunSpec device_run(std::string_view device, int trees, std::string_view policy,
                    std::string_view estimator = kEstimator) {
   const bool mobile = device == "iphone" || device == "ipad";
-  RunSpec spec = scene_run(
-      fmt::format("dong-forest:trees={},machine={},models={}", trees, device, mobile ? "mobile" : "computer"), policy,
-      kTarget_s);
+  RunSpec spec =
+      scene_run(fmt::format("dong-forest:trees={},machine={},models={}", trees, device, mobile ? "mobile" : "computer"),
+                policy, kTarget_s);
   spec.machine = parse_spec(fmt::format("{}-fitted", device), {"reproduce"});
   spec.estimator = parse_spec(estimator, {"reproduce"});
   return spec;
@@ -70,14 +70,14 @@ void tables_14_to_17(SceneRuns& runs, Reproduction& out) {
   const auto rate = [&](std::size_t place) { return 1 / runs[place].summary.mean_s; };
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const int trees = static_cast<int>(table.number(row, "trees"));
-    ReproducedRow before{.figure = "tables 14-17",
-                         .item = fmt::format("{}, {} trees, {}", table.text(row, "device"), trees,
-                                             trees == 50 ? "predicted" : "fitted"),
-                         .quantity = "frame rate before",
-                         .unit = "fps",
-                         .published = table.number(row, "before_fps"),
-                         .simulated = rate(places[row].before),
-                         .target = ReproduceTarget{ReproduceTarget::Kind::relative, 0.1}};
+    ReproducedRow before{
+        .figure = "tables 14-17",
+        .item = fmt::format("{}, {} trees, {}", table.text(row, "device"), trees, trees == 50 ? "predicted" : "fitted"),
+        .quantity = "frame rate before",
+        .unit = "fps",
+        .published = table.number(row, "before_fps"),
+        .simulated = rate(places[row].before),
+        .target = ReproduceTarget{ReproduceTarget::Kind::relative, 0.1}};
     ReproducedRow after = before;
     after.quantity = "frame rate after";
     after.published = table.number(row, "after_fps");
@@ -102,8 +102,7 @@ void look_at_floor(const Simulation& simulation, const FrameRecord& record, Floo
   const Workload& workload = simulation.workload();
   for (std::size_t i = 0; i < workload.size(); ++i) {
     const double size_percent = 100 * workload.projected_area_px[i] / workload.screen_px;
-    const bool important =
-        dong_importance({}, workload.distance_m[i], workload.view_angle_rad[i], size_percent) > 1;
+    const bool important = dong_importance({}, workload.distance_m[i], workload.view_angle_rad[i], size_percent) > 1;
     if (simulation.selection().level[i] == 0) {
       floor.coarsest += 1;
     } else {
@@ -272,12 +271,13 @@ void reproduce_dong(const ReproduceContext& context, Reproduction& out) {
   tables_14_to_17(runs, out);
   for (std::size_t d = 0; d < kDevices.size(); ++d) floor_rows(kDevices[d], looks[d].floor, out);
   out.remarks.push_back(
-      "Machines *-fitted: three constants of each device fitted to its frame rates with 30 and 80 trees, so that those "
-      "rows are no prediction; 50 trees, levels and estimation errors are. Before: levels by distance; after: the "
-      "paper's steps 1 to 6, costs corrected after each frame by equation 9.");
+      "Machines *-fitted: three constants of each device fitted to its frame rates with 30 and 80 trees, so that "
+      "those rows are no prediction; 50 trees, levels and estimation errors are. Before: levels by distance; "
+      "after: the paper's steps 1 to 6, costs corrected after each frame by equation 9.");
   out.remarks.push_back(
-      "Tables 10 to 13 in shares of the trees at five moments, as the sums of the printed rows differ; clod0 to clod3 are "
-      "read as pairs of the eight levels, clod0 the finest. The paper's moments are not stated; here frames 50 to 450.");
+      "Tables 10 to 13 in shares of the trees at five moments, as the sums of the printed rows differ; clod0 to "
+      "clod3 are read as pairs of the eight levels, clod0 the finest. The paper's moments are not stated; here "
+      "frames 50 to 450.");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What framesim reproduce prints, kept: DOCUMENT.csv beside this file, below a line that says which command makes it.
-// After a change that is meant to move figures, run that command from the top of the source tree and look at what moved.
+// After a change that is meant to move figures, run that command from the top of the source tree and see what moved.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -70,7 +70,7 @@ TEST_CASE("reproduce: dong's figures are those that are kept") { check_golden("d
 TEST_CASE("reproduce: funkhouser's figures are those that are kept") { check_golden("funkhouser"); }
 TEST_CASE("reproduce: srgge's figures are those that are kept") { check_golden("srgge"); }
 
-// The sanitizers would take minutes for its runs; what they would see there, the tests of policies and scenes show them.
+// The sanitizers would take minutes for its runs; what they would see, tests of policies and scenes show them.
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_CASE("reproduce: robin-hood's figures are those that are kept") { check_golden("robin-hood"); }
 TEST_CASE("reproduce: zach's figures are those that are kept") { check_golden("zach"); }

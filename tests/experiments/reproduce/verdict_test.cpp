@@ -13,7 +13,8 @@ using Kind = ReproduceTarget::Kind;
 
 ReproducedRow row(std::optional<double> published, double simulated, std::optional<ReproduceTarget> target,
                   std::string unit = "") {
-  return {.quantity = "mean", .unit = std::move(unit), .published = published, .simulated = simulated, .target = target};
+  return {
+      .quantity = "mean", .unit = std::move(unit), .published = published, .simulated = simulated, .target = target};
 }
 
 }  // namespace
@@ -67,6 +68,6 @@ TEST_CASE("reproduce: a difference is a share of times and rates, else the dista
   CHECK(*difference(row(50, 53, std::nullopt, "%")) == Approx(3));
   CHECK(*difference(row(50, 53, ReproduceTarget{Kind::absolute, 5}, "s")) == Approx(3));
   CHECK(*difference(row(0, 3, ReproduceTarget{Kind::relative, 0.1}, "s")) == Approx(3));  // no share of 0
-  CHECK(*difference(row(-50, -53, std::nullopt, "s")) == Approx(-0.06));                   // further down
+  CHECK(*difference(row(-50, -53, std::nullopt, "s")) == Approx(-0.06));                  // further down
   CHECK_FALSE(difference(row(std::nullopt, 3, std::nullopt)).has_value());
 }
