@@ -344,14 +344,16 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
 
 }  // namespace
 
-RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s) {
-  return forest_run(scene_settings, policy, target_s);
+std::array<RobinHoodMachine, 2> robin_hood_machines() { return {{{kAssumedMachine, false}, {kMachine, true}}}; }
+RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s,
+                       const RobinHoodMachine& machine) {
+  return forest_run(scene_settings, policy, target_s, machine.name);
 }
 std::string_view robin_hood_plain_policy() { return kPlain; }
-RunSpec robin_hood_levels_run() {
+RunSpec robin_hood_levels_run(const RobinHoodMachine& machine) {
   const PublishedTable table("robin_hood_levels");
   return forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")),
-                    "robin-hood:value=11,planning=paper", table.number(0, "target_s"));
+                    "robin-hood:value=11,planning=paper", table.number(0, "target_s"), machine.name);
 }
 
 ReproducedDocument robin_hood_document() {

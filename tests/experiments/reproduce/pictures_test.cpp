@@ -36,6 +36,10 @@ TEST_CASE("reproduce pictures: every figure has its curves and its target") {
   for (const ReproducedDocument& document : reproduced_documents()) {
     if (kSlowBuild && document.name == "zach") continue;
     for (const Picture& picture : reproduced_pictures(document, {.jobs = 1, .quiet = true, .frames = 3})) {
+      if (picture.name.ends_with("-fitted")) {  // the same once more, on the other machine
+        CHECK(picture.script.find("; machine graphicon2005-fitted'") != std::string::npos);
+        continue;
+      }
       CAPTURE(picture.name);
       REQUIRE(wanted.contains(picture.name));
       for (const std::string& text : wanted.at(picture.name)) {
