@@ -318,11 +318,11 @@ void more_trees(SceneRuns& runs, Reproduction& out) {
 void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
   SceneRuns runs(context);
   out.remarks.push_back(
-      "Machine graphicon2005-fitted: draw, pixel, submit and pixel_fifo fitted to the five linear rows of table 2, "
-      "so that those rows are no prediction; all others are. Planner: the paper's equations 5 to 7 with C = 1; "
-      "estimator: its benchmark tables. Why frames fall short: the time of a tree drawn in part holds the set-up "
-      "of its draw, which this machine hides behind the pixels of the tree before. At 200 ms print is closer to "
-      "the target than that explains.");
+      "Machine graphicon2005-fitted: draw, pixel, submit and pixel_fifo fitted to the five linear rows of table 2, so "
+      "that those rows are no prediction; all others are. Planner: the paper's equations 5 to 7 with C = 1; estimator: "
+      "its benchmark tables. Why its frames fall short: an estimate for a part of a tree holds the whole set-up of the "
+      "draw, which the machine hides where pixels take longer; and the two GPU stages of successive trees overlap, which "
+      "a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
   table_2(runs, out);
   figure_4(runs, out);
   section_72(context, runs, out);
