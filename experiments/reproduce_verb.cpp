@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "experiments/gnuplot.h"
 #include "experiments/options.h"
+#include "experiments/output_file.h"
+#include "experiments/reproduce/pictures.h"
 #include "experiments/reproduce/reproduce.h"
 #include "experiments/thread_pool.h"
 #include "experiments/verbs.h"
@@ -18,6 +21,7 @@ namespace {
 struct ReproduceOptions {
   std::string document;
   std::string format = std::string(kReproduceFormatNames[0]);
+  std::string plot_folder;
   int jobs = default_jobs();
 };
 
@@ -36,6 +40,13 @@ ReproduceFormat read_reproduce_format(const std::string& text) {
                                did_you_mean(text, kReproduceFormatNames)));
 }
 
+// In `folder`, which exists. Tells on stderr what was written.
+void draw_pictures(const ReproducedDocument& document, const ReproduceContext& context, const std::string& folder) {
+  for (const std::string& path : write_pictures(reproduced_pictures(document, context), folder)) {
+    if (!context.quiet) fmt::print(stderr, "wrote {}\n", path);
+  }
+}
+
 void reproduce_documents(const ReproduceOptions& options, const Session& session) {
   const ReproduceFormat format = read_reproduce_format(options.format);
   const std::vector<std::string_view> names = allowed_documents();
@@ -43,10 +54,16 @@ void reproduce_documents(const ReproduceOptions& options, const Session& session
     throw UsageError(fmt::format("there is no document {}; allowed: {}{}", framesim::quoted(options.document), list_of(names),
                                  did_you_mean(options.document, names)));
   }
+  if (!options.plot_folder.empty()) {
+    require_gnuplot();
+    make_folder(options.plot_folder);
+  }
   const ReproduceContext context{.jobs = options.jobs, .quiet = session.quiet};
   std::vector<Reproduction> parts;
   for (const ReproducedDocument& document : reproduced_documents()) {
-    if (options.document == "all" || options.document == document.name) parts.push_back(reproduce(document, context));
+    if (options.document != "all" && options.document != document.name) continue;
+    parts.push_back(reproduce(document, context));
+    if (!options.plot_folder.empty()) draw_pictures(document, context, options.plot_folder);
   }
   fmt::print("{}", format_reproduction(parts, format));
 }
@@ -60,6 +77,9 @@ void add_reproduce(CLI::App& app, Session& session) {
   verb->add_option("--format", options->format, "table (for people), csv or markdown")
       ->type_name("FORM")
       ->capture_default_str();
+  verb->add_option("--plot", options->plot_folder,
+                   "Write the papers' figures, from our runs (SVG), to this folder; needs gnuplot")
+      ->type_name("DIR");
   add_jobs_option(*verb, options->jobs);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
@@ -67,6 +87,7 @@ void add_reproduce(CLI::App& app, Session& session) {
       "scene under the policy certified.\n"
       "Examples:\n"
       "  framesim reproduce robin-hood\n"
+      "  framesim reproduce dong --plot pictures\n"
       "  framesim reproduce all --format markdown");
   verb->callback([options, &session] { reproduce_documents(*options, session); });
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/reproduce/documents.h"
 #include "experiments/reproduce/published.h"
 #include "experiments/reproduce/scene_runs.h"
 #include "experiments/reproduce/stepped_run.h"
@@ -286,6 +287,10 @@ void reproduce_dong(const ReproduceContext& context, Reproduction& out) {
 }
 
 }  // namespace
+
+RunSpec dong_run(std::string_view device, int trees, bool after) {
+  return device_run(device, trees, after ? kAfter : kBefore);
+}
 
 ReproducedDocument dong_document() {
   return {.name = "dong",

@@ -8,11 +8,17 @@ namespace framesim {
 
 ReproducedDocument robin_hood_document();
 ReproducedDocument dong_document();
+ReproducedDocument funkhouser_document();
+ReproducedDocument zach_document();
+ReproducedDocument srgge_document();
 
 std::span<const ReproducedDocument> reproduced_documents() {
   static const std::vector<ReproducedDocument> kDocuments = {
       robin_hood_document(),
       dong_document(),
+      funkhouser_document(),
+      zach_document(),
+      srgge_document(),
   };
   return kDocuments;
 }

@@ -4,6 +4,7 @@
 // data/*.csv (published.h), runs scenes (scene_runs.h) and returns rows. No simulated figure is written down anywhere.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,10 +58,11 @@ struct Reproduction {
   std::vector<ReproducedRow> rows;
 };
 
-// What a document may use. The result does not depend on it.
+// What a document may use. The result depends on nothing of it but `frames`.
 struct ReproduceContext {
-  int jobs = 1;        // threads
-  bool quiet = false;  // no progress on stderr
+  int jobs = 1;             // threads
+  bool quiet = false;       // no progress on stderr
+  std::int64_t frames = 0;  // at most so many of each camera path, for tests; 0 = all
 };
 
 struct ReproducedDocument {

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 
+#include "experiments/reproduce/documents.h"
+
 namespace framesim {
 namespace robin_hood {
 
@@ -165,8 +167,7 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
       "that those rows are no prediction; all others are. Planner: the paper's equations 5 to 7 with C = 1; estimator: "
       "its benchmark tables. Why its frames fall short: an estimate for a part of a tree holds the whole set-up of the "
       "draw, which the machine hides where pixels take longer; and the two GPU stages of successive trees overlap, "
-      "which "
-      "a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
+      "which a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
   table_2(runs, out);
   figure_4(runs, out);
   section_72(context, runs, out);
@@ -187,6 +188,23 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
 
 }  // namespace
 }  // namespace robin_hood
+
+std::array<RobinHoodMachine, 2> robin_hood_machines() {
+  return {{{robin_hood::kAssumedMachine, false}, {robin_hood::kMachine, true}}};
+}
+
+RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s,
+                       const RobinHoodMachine& machine) {
+  return robin_hood::forest_run(scene_settings, policy, target_s, machine.name);
+}
+
+std::string_view robin_hood_plain_policy() { return robin_hood::kPlain; }
+
+RunSpec robin_hood_levels_run(const RobinHoodMachine& machine) {
+  const PublishedTable table("robin_hood_levels");
+  return robin_hood::forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")),
+                                "robin-hood:value=11,planning=paper", table.number(0, "target_s"), machine.name);
+}
 
 ReproducedDocument robin_hood_document() {
   return {.name = "robin-hood",

@@ -16,6 +16,7 @@ RunSpec scene_run(std::string_view scene, std::string_view policy, double target
 
 std::size_t SceneRuns::add(const RunSpec& spec) {
   jobs_.push_back({.spec = spec, .scene = scenes_.get(spec.scene)});
+  if (context_.frames > 0) jobs_.back().spec.frames = context_.frames;
   return results_.size() + jobs_.size() - 1;
 }
 

@@ -67,8 +67,11 @@ TEST_CASE("reproduce: every document has its kept table, and every kept table it
 }
 
 TEST_CASE("reproduce: dong's figures are those that are kept") { check_golden("dong"); }
+TEST_CASE("reproduce: funkhouser's figures are those that are kept") { check_golden("funkhouser"); }
+TEST_CASE("reproduce: srgge's figures are those that are kept") { check_golden("srgge"); }
 
 // The sanitizers would take minutes for its runs; what they would see, tests of policies and scenes show them.
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_CASE("reproduce: robin-hood's figures are those that are kept") { check_golden("robin-hood"); }
+TEST_CASE("reproduce: zach's figures are those that are kept") { check_golden("zach"); }
 #endif
