@@ -164,8 +164,7 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
       "that those rows are no prediction; all others are. Planner: the paper's equations 5 to 7 with C = 1; estimator: "
       "its benchmark tables. Why its frames fall short: an estimate for a part of a tree holds the whole set-up of the "
       "draw, which the machine hides where pixels take longer; and the two GPU stages of successive trees overlap, "
-      "which "
-      "a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
+      "which a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
   table_2(runs, out);
   figure_4(runs, out);
   section_72(context, runs, out);
