@@ -1,5 +1,5 @@
-// Robin Hood's algorithm for time-critical level of detail, Graphicon 2005: table 2 and section 7.1; figure 4 and section
-// 7.2 have files of their own.
+// Robin Hood's algorithm for time-critical level of detail, Graphicon 2005: table 2 and section 7.1; figure 4 and
+// section 7.2 have files of their own.
 //
 // Fitted: constants of the machine, to the five linear rows of table 2 (machine profile graphicon2005-fitted says
 // which, and how). Predicted: everything else.
@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "experiments/reproduce/documents.h"
 
 namespace framesim {
 namespace robin_hood {
@@ -42,8 +40,6 @@ void add_rows(Reproduction& out, const PublishedTable& table, std::size_t row, c
 }
 
 namespace {
-
-constexpr std::string_view kPlain = "robin-hood:levels=false,planning=paper";
 
 // ---- Table 2 ----
 
@@ -188,23 +184,6 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
 
 }  // namespace
 }  // namespace robin_hood
-
-std::array<RobinHoodMachine, 2> robin_hood_machines() {
-  return {{{robin_hood::kAssumedMachine, false}, {robin_hood::kMachine, true}}};
-}
-
-RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s,
-                       const RobinHoodMachine& machine) {
-  return robin_hood::forest_run(scene_settings, policy, target_s, machine.name);
-}
-
-std::string_view robin_hood_plain_policy() { return robin_hood::kPlain; }
-
-RunSpec robin_hood_levels_run(const RobinHoodMachine& machine) {
-  const PublishedTable table("robin_hood_levels");
-  return robin_hood::forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")),
-                                "robin-hood:value=11,planning=paper", table.number(0, "target_s"), machine.name);
-}
 
 ReproducedDocument robin_hood_document() {
   return {.name = "robin-hood",

@@ -88,7 +88,7 @@ void section_72(const ReproduceContext& context, SceneRuns& runs, Reproduction& 
   });
   for (std::size_t m = 0; m < kMachines.size(); ++m) {
     const std::string on = scene(table.text(0, "path"));
-    const std::size_t run = runs.add(forest_run(on, "robin-hood:value=11,planning=paper", target_s, kMachines[m]));
+    const std::size_t run = runs.add(forest_run(on, kWithLevels, target_s, kMachines[m]));
     const std::size_t certified = runs.add(forest_run(on, "certified", target_s, kMachines[m]));
     runs.run();
     add_rows(out, table, 0, runs[run].summary, runs[certified].summary,
