@@ -1,5 +1,5 @@
-// Robin Hood's algorithm for time-critical level of detail, Graphicon 2005: table 2 and section 7.1; figure 4 and section
-// 7.2 have files of their own.
+// Robin Hood's algorithm for time-critical level of detail, Graphicon 2005: table 2 and section 7.1; figure 4 and
+// section 7.2 have files of their own.
 //
 // Fitted: constants of the machine, to the five linear rows of table 2 (machine profile graphicon2005-fitted says
 // which, and how). Predicted: everything else.
@@ -40,7 +40,6 @@ void add_rows(Reproduction& out, const PublishedTable& table, std::size_t row, c
 }
 
 namespace {
-
 
 // ---- Table 2 ----
 

@@ -13,7 +13,7 @@ namespace framesim::robin_hood {
 inline constexpr std::string_view kMachine = "graphicon2005-fitted";
 inline constexpr std::string_view kAssumedMachine = "graphicon2005";  // before the fit
 inline constexpr std::array<std::string_view, 2> kMachines = {kMachine, kAssumedMachine};
-inline constexpr std::string_view kPlain = "robin-hood:levels=false,planning=paper";  // section 7.1
+inline constexpr std::string_view kPlain = "robin-hood:levels=false,planning=paper";   // section 7.1
 inline constexpr std::string_view kWithLevels = "robin-hood:value=11,planning=paper";  // section 7.2
 inline constexpr ReproduceTarget kErrorTarget{ReproduceTarget::Kind::absolute, 0.02};
 
