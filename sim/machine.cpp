@@ -18,6 +18,12 @@ void require_cost(const std::string& machine, const char* name, double value) {
   throw InputError({"machine " + machine}, fmt::format("{} is {}; allowed is a finite time from 0 to one day", name, value));
 }
 
+// A share, not a time: files and fits have the same range.
+void require_nonlinearity(const std::string& machine, double value) {
+  if (value >= 0 && value <= 1e6) return;
+  throw InputError({"machine " + machine}, fmt::format("pixel_nonlinearity is {}; allowed is 0 to 1e6", value));
+}
+
 void require_fifo(const std::string& machine, const char* name, int value) {
   if (value >= 1 && value <= 1'000'000) return;
   throw InputError({"machine " + machine}, fmt::format("{} is {}; allowed are 1 to 1000000 commands", name, value));
@@ -105,7 +111,7 @@ Machine::Machine(MachineProfile profile) : profile_(std::move(profile)) {
     require_cost(p.name, "vertex", costs.vertex_s);
     require_cost(p.name, "texture_byte", costs.texture_byte_s);
     require_cost(p.name, "pixel", costs.pixel_s);
-    require_cost(p.name, "pixel_nonlinearity", costs.pixel_nonlinearity);
+    require_nonlinearity(p.name, costs.pixel_nonlinearity);
   }
   require_cost(p.name, "submit", p.submit_s);
   require_cost(p.name, "submit_draw", p.submit_draw_s);

@@ -8,19 +8,6 @@
 
 namespace framesim {
 
-// Robin Hood 2005. Two machines: one with costs read off the paper's curves, and one fitted to its table 2.
-struct RobinHoodMachine {
-  std::string_view name;
-  bool fitted;
-};
-std::array<RobinHoodMachine, 2> robin_hood_machines();
-// graphicon-forest with these settings ("path=linear") under any policy; the policy of section 7.1 (no levels of
-// detail); and the run of section 7.2 (levels of detail, figures 6 and 7).
-RunSpec robin_hood_run(std::string_view scene_settings, std::string_view policy, double target_s,
-                       const RobinHoodMachine& machine);
-std::string_view robin_hood_plain_policy();
-RunSpec robin_hood_levels_run(const RobinHoodMachine& machine);
-
 // Dong et al. 2015: that many trees on a device ("computer1", ...), before and after their method.
 RunSpec dong_run(std::string_view device, int trees, bool after);
 

@@ -2,10 +2,10 @@
 // were read off such curves has their height, the one fitted to table 2 (names that end in "-fitted") its means.
 #include <fmt/format.h>
 
-#include "experiments/reproduce/documents.h"
 #include "experiments/reproduce/frame_plot.h"
 #include "experiments/reproduce/pictures.h"
 #include "experiments/reproduce/published.h"
+#include "experiments/reproduce/robin_hood.h"
 #include "experiments/reproduce/scene_runs.h"
 #include "experiments/reproduce/stepped_run.h"
 #include "scenes/registry.h"
@@ -13,13 +13,17 @@
 namespace framesim {
 namespace {
 
+using robin_hood::forest_run;
+using robin_hood::kMachine;
+using robin_hood::kPlain;
+
 constexpr double kUnrestrictedTarget_s = 0.2;  // full detail takes no notice of it
 
-std::string title(int figure, std::string_view shows, const RobinHoodMachine& machine) {
-  return fmt::format("Robin Hood 2005, figure {}: {}; machine {}", figure, shows, machine.name);
+std::string title(int figure, std::string_view shows, std::string_view machine) {
+  return fmt::format("Robin Hood 2005, figure {}: {}; machine {}", figure, shows, machine);
 }
-std::string file_name(int figure, const RobinHoodMachine& machine) {
-  return fmt::format("robin-hood-figure-{}{}", figure, machine.fitted ? "-fitted" : "");
+std::string file_name(int figure, std::string_view machine) {
+  return fmt::format("robin-hood-figure-{}{}", figure, machine == kMachine ? "-fitted" : "");
 }
 
 // ---- Figures 3 and 4: without restriction (bold), under each target (thin), the targets (dashed) ----
@@ -34,21 +38,20 @@ struct PathRuns {
   std::vector<TargetRun> restricted;
 };
 
-PathRuns add_path(SceneRuns& runs, const std::string& path, const RobinHoodMachine& machine) {
-  PathRuns list{
-      .path = path,
-      .unrestricted = runs.add(robin_hood_run("path=" + path, "full-detail", kUnrestrictedTarget_s, machine))};
+PathRuns add_path(SceneRuns& runs, const std::string& path, std::string_view machine) {
+  PathRuns list{.path = path,
+                .unrestricted = runs.add(forest_run("path=" + path, "full-detail", kUnrestrictedTarget_s, machine))};
   const PublishedTable table("robin_hood_table2");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.text(row, "path") != path) continue;
     const double target_s = table.number(row, "target_s");
-    const RunSpec spec = robin_hood_run("path=" + path, robin_hood_plain_policy(), target_s, machine);
+    const RunSpec spec = forest_run("path=" + path, kPlain, target_s, machine);
     list.restricted.push_back({target_s, runs.add(spec)});
   }
   return list;
 }
 
-Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure, const RobinHoodMachine& machine) {
+Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure, std::string_view machine) {
   FramePlot plot{.title = title(figure, list.path + " path, without levels of detail", machine)};
   plot.curves.push_back(
       frame_time_curve("without restriction", kUnrestrictedColour, 2.5, runs[list.unrestricted].records));
@@ -66,8 +69,13 @@ Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure, co
 
 // ---- Figures 6 and 7: with levels of detail ----
 
-Picture figure_7(const SceneRuns& runs, std::size_t unrestricted, std::size_t restricted,
-                 const RobinHoodMachine& machine) {
+RunSpec levels_run(std::string_view machine) {
+  const PublishedTable table("robin_hood_levels");
+  return forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")), robin_hood::kWithLevels,
+                    table.number(0, "target_s"), machine);
+}
+
+Picture figure_7(const SceneRuns& runs, std::size_t unrestricted, std::size_t restricted, std::string_view machine) {
   const double target_ms = 1e3 * runs[restricted].target_s;
   FramePlot plot{.title = title(7, "linear path, with levels of detail", machine)};
   plot.curves.push_back(frame_time_curve("without restriction", kUnrestrictedColour, 2.5, runs[unrestricted].records));
@@ -95,8 +103,8 @@ Primitives primitives_drawn(const Simulation& simulation) {
   return drawn;
 }
 
-Picture figure_6(const ReproduceContext& context, const RobinHoodMachine& machine) {
-  RunSpec spec = robin_hood_levels_run(machine);
+Picture figure_6(const ReproduceContext& context, std::string_view machine) {
+  RunSpec spec = levels_run(machine);
   spec.frames = context.frames;
   FrameCurve triangles{.title = "triangles", .colour = "#000000", .width = 1.6, .first_frame = 0};
   FrameCurve lines{.title = "lines", .colour = "#0072B2", .width = 1.6, .first_frame = 0};
@@ -114,10 +122,10 @@ Picture figure_6(const ReproduceContext& context, const RobinHoodMachine& machin
   return {file_name(6, machine), frame_plot_script(plot)};
 }
 
-std::vector<Picture> pictures_on(const ReproduceContext& context, const RobinHoodMachine& machine) {
+std::vector<Picture> pictures_on(const ReproduceContext& context, std::string_view machine) {
   SceneRuns runs(context);
   const PathRuns linear = add_path(runs, "linear", machine), zigzag = add_path(runs, "zigzag", machine);
-  RunSpec levels = robin_hood_levels_run(machine);
+  RunSpec levels = levels_run(machine);
   const std::size_t restricted = runs.add(levels);
   levels.policy = parse_spec("full-detail", {"reproduce"});
   const std::size_t unrestricted = runs.add(levels);
@@ -130,7 +138,7 @@ std::vector<Picture> pictures_on(const ReproduceContext& context, const RobinHoo
 
 std::vector<Picture> robin_hood_pictures(const ReproduceContext& context) {
   std::vector<Picture> pictures;
-  for (const RobinHoodMachine& machine : robin_hood_machines()) {
+  for (const std::string_view machine : robin_hood::kMachines) {
     for (Picture& picture : pictures_on(context, machine)) pictures.push_back(std::move(picture));
   }
   return pictures;

@@ -1,5 +1,7 @@
 #include "sim/machine.h"
 
+#include <limits>
+
 #include "sim/policy.h"
 #include "tests/catch.h"
 
@@ -62,6 +64,17 @@ TEST_CASE("a machine with a negative or missing number is refused by name") {
   profile = round_numbers();
   profile.pixel_fifo = 0;
   CHECK_THROWS_AS(Machine(profile), InputError);
+}
+
+// A day has 86,400 s: the nonlinearity is no time, and its range is that of machine files.
+TEST_CASE("a machine's nonlinearity in projected area may be 0 to a million") {
+  MachineProfile profile = round_numbers();
+  for (AlgorithmCosts& costs : profile.algorithm) costs.pixel_nonlinearity = 1e6;
+  CHECK_NOTHROW(Machine(profile));
+  for (const double wrong : {-1.0, 1.1e6, std::numeric_limits<double>::quiet_NaN()}) {
+    profile.algorithm[0].pixel_nonlinearity = wrong;
+    CHECK_THROWS_WITH(Machine(profile), contains("allowed is 0 to 1e6"));
+  }
 }
 
 TEST_CASE("overlap models are read and written in the same words") {

@@ -39,6 +39,13 @@ std::string first_line(std::string_view name) {
   return "# { echo \"$(head -1 " + file + ")\"; " + make + "; } > new.csv && mv new.csv " + file;
 }
 
+// A document that the README shows ("### name: ") is there as it is printed now.
+void check_readme(const std::vector<Reproduction>& found) {
+  const std::string readme = read_file(std::string(kSourceFolder) + "/README.md");
+  if (readme.find("### " + found.front().document + ": ") == std::string::npos) return;
+  CHECK(readme.find(format_reproduction(found, ReproduceFormat::markdown)) != std::string::npos);
+}
+
 // Every figure as text: a difference in the last bit shows.
 void check_golden(std::string_view name) {
   const auto& documents = reproduced_documents();
@@ -51,6 +58,7 @@ void check_golden(std::string_view name) {
   const std::vector<std::string> kept = lines_of(read_file(folder() + std::string(name) + ".csv"));
   for (std::size_t i = 0; i < std::min(kept.size(), rerun.size()); ++i) CHECK(rerun[i] == kept[i]);
   CHECK(rerun.size() == kept.size());
+  check_readme(found);
 }
 
 }  // namespace

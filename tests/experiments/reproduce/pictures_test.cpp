@@ -67,13 +67,13 @@ TEST_CASE("reproduce pictures: a curve's values stand at their frames, the axis 
 
 TEST_CASE("reproduce pictures: --plot writes them, whole") {
   const TestFolder folder;
-  const ProgramRun run = run_program({"reproduce", "srgge", "--plot", folder.path("p")});
+  const ProgramRun run = run_program({"reproduce", "funkhouser", "--plot", folder.path("p")});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
-  CHECK(run.out.starts_with("srgge: "));
-  CHECK(run.err.find("wrote " + folder.path("p/srgge-triangles.svg")) != std::string::npos);
-  const std::string picture = folder.read("p/srgge-triangles.svg");
-  for (const char* text : {"<svg", "repaired", "as printed, from the coarsest", "budget", "frame", "</svg>"}) {
+  CHECK(run.out.starts_with("funkhouser: "));
+  CHECK(run.err.find("wrote " + folder.path("p/funkhouser-figure-7.svg")) != std::string::npos);
+  const std::string picture = folder.read("p/funkhouser-figure-7.svg");
+  for (const char* text : {"<svg", "no detail elision", "Feedback", "target 100 ms", "frame time in ms", "</svg>"}) {
     CHECK(picture.find(text) != std::string::npos);
   }
 }

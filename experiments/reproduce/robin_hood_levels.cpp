@@ -1,0 +1,103 @@
+// Robin Hood's section 7.2: levels of detail, value function 11.
+//
+// The paper: function 11 gives so much time to instances near the camera that they cannot use it, which can be seen by
+// comparing t_i with the time of their finest level. Both are in the record of a run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "experiments/reproduce/robin_hood.h"
+#include "experiments/reproduce/stepped_run.h"
+#include "experiments/thread_pool.h"
+#include "scenes/registry.h"
+
+namespace framesim::robin_hood {
+namespace {
+
+// Shares of the budget: the most that equation 2 gives in a frame to instances beyond the time of their finest level
+// ("sometimes"), and what nobody could use in the end, its mean over frames.
+struct Remainders {
+  double beyond_finest = 0, unspent = 0;
+};
+
+// Equations 8 and 11, as the policy robin-hood computes them.
+double value_of(const Workload& workload, std::size_t item, bool equation_11) {
+  constexpr double kNear_m = 0.1;
+  const double area = std::max(workload.area_m2[item], 0.0), importance = workload.type_of(item).importance;
+  if (equation_11) return std::sqrt(area) / std::max(workload.distance_m[item], kNear_m) * importance;
+  return area * importance / std::sqrt(std::max(workload.depth_m[item], kNear_m));
+}
+
+double beyond_finest(const Workload& workload, double budget_s, bool equation_11) {
+  double total = 0, beyond_s = 0;
+  for (std::size_t i = 0; i < workload.size(); ++i) total += value_of(workload, i, equation_11);
+  for (std::size_t i = 0; i < workload.size(); ++i) {
+    const double time_s = value_of(workload, i, equation_11) / total * budget_s;
+    beyond_s += std::max(0.0, time_s - workload.cost_s[workload.finest(i)]);
+  }
+  return total > 0 && budget_s > 0 ? beyond_s / budget_s : 0;
+}
+
+Remainders remainders(std::string_view scene, int equation, double target_s, std::string_view machine) {
+  const std::string policy = fmt::format("robin-hood:value={},planning=paper", equation);
+  const RunSpec spec = forest_run(scene, policy, target_s, machine);
+  Remainders sum;
+  double frames = 0;
+  run_stepped(spec, load_scene(spec.scene), [&](const Simulation& simulation, const FrameRecord& record) {
+    frames += 1;
+    sum.beyond_finest =
+        std::max(sum.beyond_finest, beyond_finest(simulation.workload(), record.budget_s, equation == 11));
+    sum.unspent += record.budget_s > 0 ? 1 - record.planned_cost_s / record.budget_s : 0;
+  });
+  constexpr double kDigits = 1e9;  // below them is the rounding of sums
+  return {.beyond_finest = sum.beyond_finest, .unspent = std::round(kDigits * sum.unspent / frames) / kDigits};
+}
+
+void remainder_rows(const std::string& item, const Remainders& by_11, const Remainders& by_8, Reproduction& out) {
+  const auto add = [&](std::string_view value, const char* quantity, double share) {
+    out.rows.push_back({.figure = "section 7.2",
+                        .item = fmt::format("{}, {}", item, value),
+                        .quantity = quantity,
+                        .unit = "%",
+                        .simulated = 100 * share});
+  };
+  constexpr const char* kBeyond = "most given beyond the finest level";
+  add("value 11", kBeyond, by_11.beyond_finest);
+  add("value 8", kBeyond, by_8.beyond_finest);
+  add("value 11 less value 8", kBeyond, by_11.beyond_finest - by_8.beyond_finest);
+  out.rows.back().target = ReproduceTarget{ReproduceTarget::Kind::at_least, 1};
+  add("value 11", "budget that nobody could use", by_11.unspent);
+  add("value 8", "budget that nobody could use", by_8.unspent);
+}
+
+constexpr std::array<std::string_view, 2> kPaths = {"linear", "zigzag"};
+constexpr std::array<int, 2> kEquations = {11, 8};
+
+}  // namespace
+
+// Under both machines: table 2, which the fit knows, draws no lines and points.
+void section_72(const ReproduceContext& context, SceneRuns& runs, Reproduction& out) {
+  const PublishedTable table("robin_hood_levels");
+  const double target_s = table.number(0, "target_s");
+  const auto scene = [](std::string_view path) { return fmt::format("path={},representation=view-levels", path); };
+  std::array<Remainders, kMachines.size() * kPaths.size() * kEquations.size()> found;  // machine, path, equation
+  parallel_for(found.size(), context.jobs, [&](std::size_t task) {
+    found[task] = remainders(scene(kPaths[task / 2 % 2]), kEquations[task % 2], target_s, kMachines[task / 4]);
+  });
+  for (std::size_t m = 0; m < kMachines.size(); ++m) {
+    const std::string on = scene(table.text(0, "path"));
+    const std::size_t run = runs.add(forest_run(on, kWithLevels, target_s, kMachines[m]));
+    const std::size_t certified = runs.add(forest_run(on, "certified", target_s, kMachines[m]));
+    runs.run();
+    add_rows(out, table, 0, runs[run].summary, runs[certified].summary,
+             {.figure = "section 7.2", .item = fmt::format("{}, value 11, {}", kMachines[m], target_name(target_s))});
+    for (std::size_t p = 0; p < kPaths.size(); ++p) {
+      const std::size_t first = m * 4 + p * 2;
+      remainder_rows(fmt::format("{}, {}", kMachines[m], kPaths[p]), found[first], found[first + 1], out);
+    }
+  }
+}
+
+}  // namespace framesim::robin_hood
