@@ -8,15 +8,21 @@
 #include "scenes/scene_workload.h"
 #include "sim/event_engine.h"
 #include "sim/simulation.h"
+#include "tests/allocations.h"
 #include "tests/catch.h"
 
 namespace {
-std::atomic<std::int64_t> allocations{0};
+std::atomic<std::int64_t> allocations{0}, bytes{0};
 }
+namespace framesim::testing {
+std::int64_t allocations() { return ::allocations; }
+std::int64_t allocated_bytes() { return ::bytes; }
+}  // namespace framesim::testing
 
 // Not inlined: g++ takes a visible free() of what a visible operator new returned for a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++allocations;
+  bytes += static_cast<std::int64_t>(size);
   return std::malloc(size == 0 ? 1 : size);
 }
 [[gnu::noinline]] void* operator new(std::size_t size) {

@@ -4,6 +4,7 @@
 
 #include "scenes/registry.h"
 #include "scenes/scene_file.h"
+#include "tests/allocations.h"
 #include "tests/catch.h"
 #include "tests/scenes/refusal.h"
 #include "tests/scenes/temp_folder.h"
@@ -45,7 +46,38 @@ std::string refused(const std::string& text, const std::string& folder = "", con
 
 std::string generator(const std::string& settings) { return scene("[[generator]]\n" + settings); }
 
+// The same with `types` more types, 100 bytes each, before the camera.
+std::string with_types(std::string text, int types) {
+  std::string more;
+  for (int i = 0; i < types; ++i)
+    more += "[[type]]\nname = 'type-" + std::to_string(1000 + i) +
+            "'\nradius = '6m'\narea = 40.0\n[[type.level]]\npolygons = 12\nvertices = 24\n";
+  return text.insert(text.find("[camera]"), more);
+}
+
+std::int64_t bytes_to_refuse(const std::string& text) {
+  const std::int64_t before = testing::allocated_bytes();
+  CHECK_FALSE(refused(text).empty());
+  return testing::allocated_bytes() - before;
+}
+
 }  // namespace
+
+TEST_CASE("a scene file of 2 KB that asks for a million million instances takes memory by its own size only", "[limits]") {
+  for (const char* settings : {"kind = 'rows'\ntype = 'house'\ncolumns = 1000000\nrows = 1000000\n",
+                               "kind = 'scatter'\ntypes = 'house'\ncount = 1000000000000\n",
+                               "kind = 'terrain'\nside = 8388609\npatch = 32\n"}) {
+    CAPTURE(settings);
+    const std::string small = with_types(generator(settings), 16), large = with_types(generator(settings), 32);
+    REQUIRE(small.size() > 1900);
+    REQUIRE(small.size() < 2300);
+    // All that was asked for from first to last, which is no less than what was ever held: 10^12 instances would be 4e13
+    // bytes. Twice the file takes no more than twice as much.
+    const std::int64_t bytes = bytes_to_refuse(small);
+    CHECK(bytes < 100 * static_cast<std::int64_t>(small.size()));
+    CHECK(bytes_to_refuse(large) < 2 * bytes);
+  }
+}
 
 TEST_CASE("a few bytes that ask for a million million instances are refused with the limit", "[limits]") {
   const std::string raise = "--limit-instances N";
