@@ -42,15 +42,17 @@ Bracket BracketSearch::around(double multiplier, double width) const {
   return {multiplier / factor, std::min(multiplier * factor, kLargestMultiplier)};
 }
 
-// Large lists only: for small ones a pass costs no more than looking.
+// Large lists only: for small ones a pass costs no more than looking. At either side of last frame's multiplier: where items tie
+// at it, what is spent there can be anything.
 bool BracketSearch::looks_cut(Found& found) const {
   const std::size_t stride = stride_for(columns_->size(), kPeek);
   if (stride < 4) return false;
-  const PassResult peek = pass_over_sample(*columns_, {multiplier_, multiplier_}, stride);
+  const PassResult peek = pass_over_sample(*columns_, multiplier_ > 0 ? around(multiplier_, width_) : Bracket{0, 0}, stride);
   found.looked_at += static_cast<std::int64_t>(peek.looked_at);
   const double whole = static_cast<double>(columns_->size()) / static_cast<double>(peek.looked_at);
-  const double share = peek.high.cost_s * whole / budget_s_;
-  return multiplier_ > 0 ? std::fabs(share - 1) > kCut : share > 1 - kCut;
+  if (peek.high.cost_s * whole > (1 + kCut) * budget_s_) return true;
+  const double low_s = peek.low.cost_s * whole, limit_s = (1 - kCut) * budget_s_;
+  return multiplier_ > 0 ? low_s < limit_s : low_s > limit_s;
 }
 
 // Encloses the multiplier on a sample, from `start` outwards, and cuts the interval in three until it is as narrow as the
@@ -108,9 +110,12 @@ Bracket BracketSearch::search_afresh(Found& found) const {
   return refines ? search_sample(found, finer, bracket, narrow) : bracket;
 }
 
-Bracket BracketSearch::first_bracket(Found& found) const {
-  if (!warm_ || looks_cut(found)) return search_afresh(found);
+Bracket BracketSearch::warm_bracket() const {
   return multiplier_ > 0 ? around(multiplier_, std::max(width_, 2 * drift_)) : Bracket{0, 0};
+}
+
+Bracket BracketSearch::first_bracket(Found& found) const {
+  return !warm_ || looks_cut(found) ? search_afresh(found) : warm_bracket();
 }
 
 BracketSearch::Found BracketSearch::find(const LevelColumns& columns, double budget_s, std::span<std::int16_t> level,

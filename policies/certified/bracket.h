@@ -28,6 +28,7 @@ class BracketSearch {
   void learn(double multiplier, std::size_t open, std::size_t items);
 
  private:
+  Bracket warm_bracket() const;
   Bracket first_bracket(Found& found) const;
   Bracket search_afresh(Found& found) const;
   Bracket search_sample(Found& found, std::size_t stride, Bracket start, double narrow) const;
