@@ -10,7 +10,8 @@
 //                threshold <- clamp( threshold / (1 + out), min, max ) for out >= 0, threshold * (1 - out) for out < 0
 //                "Velocity" control: out changes the threshold, so with out = 0 it stays, and kp alone leaves no steady
 //                error but the dead band's; I is what gets it out of that. After a frame whose threshold was clamped I
-//                is frozen for one update, so it does not wind up while nothing can be done.
+//                is frozen for one update, so it does not wind up while nothing can be done; but not while e calls for the
+//                way back and ki I outweighs it, or the threshold would stay at its bound for ever (Filament's does).
 // Defaults:      Filament's: rate 1/8 (1/N: N frames to 64 % of a change), ki 0.002, kd 0, dead band -0.01 to 0.05,
 //                limit 100, headroom 0, history 15 (at least 3 frames before anything is done). Its range is 1/4 to 1
 //                of the pixels; that of a size threshold is ours.
@@ -125,10 +126,12 @@ class PidPolicy : public Policy {
   }
 
   double control(double error) {
-    if (!clamped_) integral_ = std::clamp(integral_ + error, -parameters_.limit, parameters_.limit);
+    const double kp = 1 - std::exp(-parameters_.rate);
+    // Past errors alone hold the threshold at its bound, against the present one.
+    const bool locked = clamped_ && error * (kp * error + parameters_.ki * integral_) < 0;
+    if (!clamped_ || locked) integral_ = std::clamp(integral_ + error, -parameters_.limit, parameters_.limit);
     const double derivative = error - last_error_;
     last_error_ = error;
-    const double kp = 1 - std::exp(-parameters_.rate);
     const double out = kp * error + parameters_.ki * integral_ + parameters_.kd * derivative;
     return out > parameters_.low && out < parameters_.high ? 0 : out;
   }
