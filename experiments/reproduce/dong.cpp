@@ -282,8 +282,9 @@ void reproduce_dong(const ReproduceContext& context, Reproduction& out) {
   out.remarks.push_back(
       "Tables 10 to 13 in shares of the trees at five moments, as the sums of the printed rows differ. Four columns "
       "for "
-      "eight levels: clod0 is read as the finest level, clod3 as the fourth and all coarser ones. The paper states "
-      "neither its moments (here frames 50 to 450) nor its distance thresholds nor where the trees stand.");
+      "eight levels: clod0 is read as the finest level, clod3 as the fourth and all coarser ones; pairs of levels, the "
+      "reading tried first, are further from print on most rows. The paper states neither its moments (here frames 50 "
+      "to 450) nor its distance thresholds nor where the trees stand.");
 }
 
 }  // namespace
