@@ -84,6 +84,7 @@ int parse_and_run(int argc, char** argv) {
   add_explain(app, session);
   add_check(app, session);
   add_tradeoff(app, session);
+  add_reproduce(app, session);
   add_stability(app, session);
   add_import(app, session);
   add_fit(app, session);

@@ -24,18 +24,6 @@ EngineKind read_fidelity(const std::string& text, const InputLocation& where) {
                    fmt::format("--fidelity: '{}' is unknown; allowed: {}", text, fmt::join(kEngineKindNames, ", ")));
 }
 
-std::int64_t read_frames(const std::string& text, const InputLocation& where) {
-  if (text == "all") return 0;
-  const QuantityResult count = parse_number(text);
-  const bool whole = count.value && *count.value >= 1 && *count.value <= kMostFrames &&
-                     *count.value == static_cast<double>(static_cast<std::int64_t>(*count.value));
-  if (!whole) {
-    throw InputError(where, fmt::format("--frames: '{}' is not a number of frames; allowed: 1 to {:.0f}, or all", text,
-                                        kMostFrames));
-  }
-  return static_cast<std::int64_t>(*count.value);
-}
-
 SceneLimits read_limits(const SharedOptions& options, const InputLocation& where) {
   SceneLimits limits;
   limits.outside_paths = options.outside_paths;
@@ -67,6 +55,18 @@ bool continues_spec(std::string_view piece) {
 }
 
 }  // namespace
+
+std::int64_t read_frames(const std::string& text, const InputLocation& where) {
+  if (text == "all") return 0;
+  const QuantityResult count = parse_number(text);
+  const bool whole = count.value && *count.value >= 1 && *count.value <= kMostFrames &&
+                     *count.value == static_cast<double>(static_cast<std::int64_t>(*count.value));
+  if (!whole) {
+    throw InputError(where, fmt::format("--frames: '{}' is not a number of frames; allowed: 1 to {:.0f}, or all", text,
+                                        kMostFrames));
+  }
+  return static_cast<std::int64_t>(*count.value);
+}
 
 void note_left_out(EngineKind asked, std::span<const RunResult> results) {
   std::vector<std::string> noted;

@@ -43,6 +43,9 @@ void note_left_out(EngineKind asked, std::span<const RunResult> results);
 // it: "distance,robin-hood:value=8,levels=no,static" is three specs. Texts are read in order.
 std::vector<Spec> read_specs(const std::vector<std::string>& texts, const InputLocation& where);
 
+// "all" is 0, for the whole camera path; or a count.
+std::int64_t read_frames(const std::string& text, const InputLocation& where);
+
 // A wanted frame time: "25ms", "60fps"; more than 0.
 double read_target_s(const std::string& text, const InputLocation& where);
 

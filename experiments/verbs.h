@@ -19,6 +19,7 @@ void add_compare(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_tradeoff(CLI::App& app, Session& session);
+void add_reproduce(CLI::App& app, Session& session);
 void add_stability(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);

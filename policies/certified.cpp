@@ -10,7 +10,7 @@
 //                point, whatever the parameters say.
 // Omitting:      with `none=true` "not drawn" is a level like others. Otherwise every item with levels is drawn if the
 //                cheapest levels fit together; if not, items may be left out in that frame. Curves may always go to 0.
-// Hysteresis:    an item's level of last frame counts with 1 + hysteresis of its benefit when levels are chosen, so a frame
+// Hysteresis:    an item's level of last frame, or a curve's rung of the stand-in ladder, counts with 1 + hysteresis of its benefit when levels are chosen, so a frame
 //                gives away at most that share of its benefit; costs are counted in full.
 // Headroom:      with `miss-rate` below 100 % the budget is the planner's less a headroom learned from which frames
 //                were too long (certified/headroom.h); it may be more than the planner's where that is too careful.
@@ -25,6 +25,7 @@
 #include "policies/certified/tree_search.h"
 #include "policies/keep_budget.h"
 #include "policies/level_rules.h"
+#include "sim/stand_in.h"
 
 namespace framesim {
 namespace {
@@ -70,7 +71,8 @@ class CertifiedPolicy : public Policy {
   }
 
   void prepare(const PolicyScene& scene) override {
-    flat_.forget(), flat_bound_.forget(), tree_.forget(), tree_bound_.forget();
+    flat_.forget(), flat_bound_.forget(), flat_proof_.forget();
+    tree_.forget(), tree_bound_.forget(), tree_proof_.forget();
     headroom_.forget();
     if (!keeps()) return;
     last_level_.assign(scene.instances, kNoLevel);
@@ -145,7 +147,7 @@ class CertifiedPolicy : public Policy {
       LevelColumns relaxed = columns(workload, true);
       relaxed.kept = {};
       scratch_.resize(workload.size());
-      const FlatPlan proof = flat_bound_.bound(relaxed, budget_s, scratch_);
+      const FlatPlan proof = flat_proof_.bound(relaxed, budget_s, scratch_);
       if (proof.bound < plan.bound) plan.bound = proof.bound, plan.multiplier = proof.multiplier;
       plan.operations += proof.operations;
     }
@@ -174,8 +176,7 @@ class CertifiedPolicy : public Policy {
       plan.operations += tried;
     }
     if (!plan.tight) {
-      proof_.reset(workload.size());
-      const TreePlan proof = tree_bound_.solve(workload, budget_s, {.may_omit = true}, proof_);
+      const TreePlan proof = tree_proof_.bound(workload, budget_s, {.may_omit = true});
       if (proof.bound < plan.bound) plan.bound = proof.bound, plan.multiplier = proof.multiplier;
       plan.operations += proof.operations;
     }
@@ -201,7 +202,11 @@ class CertifiedPolicy : public Policy {
     const Workload& workload = context.workload;
     for (std::size_t i = 0; i < workload.size(); ++i) {
       const std::size_t id = index(workload.id[i]);
-      last_level_[id] = selection.level[i] < 0 ? kNoLevel : static_cast<std::uint8_t>(selection.level[i]);
+      const int level = workload.kind[i] != ItemKind::curve ? selection.level[i]
+                        : selection.level[i] < 0
+                            ? -1
+                            : rung_of(selection.resolution[i], workload.type_of(i).stand_in_levels);
+      last_level_[id] = level < 0 ? kNoLevel : static_cast<std::uint8_t>(level);
       last_frame_[id] = context.frame;
     }
   }
@@ -209,16 +214,17 @@ class CertifiedPolicy : public Policy {
   const CertifiedParameters parameters_;
   Headroom headroom_;
   FlatSearch flat_{static_cast<std::size_t>(parameters_.states)},
-      flat_bound_{static_cast<std::size_t>(parameters_.states)};
+      flat_bound_{static_cast<std::size_t>(parameters_.states)},
+      flat_proof_{static_cast<std::size_t>(parameters_.states)};
   TreeSearch tree_{static_cast<std::size_t>(parameters_.states)},
-      tree_bound_{static_cast<std::size_t>(parameters_.states)};
+      tree_bound_{static_cast<std::size_t>(parameters_.states)},
+      tree_proof_{static_cast<std::size_t>(parameters_.states)};
   SmallExact small_;
   double unspent_s_ = 0;                  // of the planner's budget, in this frame
   std::vector<std::uint8_t> last_level_;  // an instance: its level in the last frame it was visible
   std::vector<std::int64_t> last_frame_;  // ... and that frame
-  std::vector<std::uint8_t> kept_;        // an item of this frame: its level in the last, or kNoLevel
+  std::vector<std::uint8_t> kept_;        // an item of this frame: its level (or rung) in the last, or kNoLevel
   std::vector<std::int16_t> scratch_;
-  Selection proof_;
 };
 
 // "1%" as well as "1".

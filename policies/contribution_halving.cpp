@@ -15,10 +15,10 @@
 //                ranked wrongly.
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
+#include "policies/contribution.h"
 #include "policies/level_rules.h"
 
 namespace framesim {
@@ -131,10 +131,7 @@ class ContributionPolicy : public Policy {
   }
 
   static double contribution(const Workload& workload, std::size_t i, std::size_t level) {
-    double c = std::numeric_limits<double>::infinity();  // the camera is at its centre
-    if (workload.distance_m[i] > 0) c = workload.diagonal_m[i] / workload.distance_m[i];
-    for (; level > 0; --level) c /= 2;
-    return c;
+    return srgge_contribution(workload.diagonal_m[i], workload.distance_m[i], level);
   }
 
   // Takes the top off the heap.

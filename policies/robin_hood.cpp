@@ -18,17 +18,18 @@
 // Known failure: one pass in a fixed order. An early, simple instance never receives what later ones leave, and if the
 //                last instances cannot use their time it is lost (the paper, section 7.2). Blind to benefit.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "policies/keep_budget.h"
 #include "policies/level_rules.h"
+#include "policies/shares/instance_value.h"
 #include "sim/statistics.h"
 
 namespace framesim {
 namespace {
 
-enum Value { kEquation8, kEquation9, kEquation10, kEquation11 };
+constexpr int kEquation8 = static_cast<int>(InstanceValue::equation8);
+constexpr int kEquation11 = static_cast<int>(InstanceValue::equation11);
 enum Planning { kInverse, kPaper };
 enum Sums { kSuffix, kPrinted };
 
@@ -126,22 +127,11 @@ class RobinHoodPolicy : public Policy {
     }
   }
 
-  // Equations 8 to 11; eq. 11 reads sqrt(a)/d * I, the root over both (MODEL section 4).
   double value_of(const Workload& workload, std::size_t item) const {
-    const double area = std::max(workload.area_m2[item], 0.0);
-    const double importance = workload.type_of(item).importance;
-    if (parameters_.value == kEquation11) {
-      return std::sqrt(area) / std::max(workload.distance_m[item], parameters_.near_m) * importance;
-    }
-    const double z = std::max(workload.depth_m[item], parameters_.near_m);
-    switch (parameters_.value) {
-      case kEquation9:
-        return area * importance / z;
-      case kEquation10:
-        return area * importance / (z * z);
-      default:
-        return area * importance / std::sqrt(z);
-    }
+    const double depth_m = parameters_.value == kEquation11 ? 0 : workload.depth_m[item];
+    const double distance_m = parameters_.value == kEquation11 ? workload.distance_m[item] : 0;
+    return instance_value(static_cast<InstanceValue>(parameters_.value), workload.area_m2[item],
+                          workload.type_of(item).importance, depth_m, distance_m, parameters_.near_m);
   }
 
   // For each place, the sum of the values from there on.

@@ -1,7 +1,13 @@
-# Writes OUTPUT: a C++ file with the text of every TOML file under ROOT, for registry.cpp.
-set(out "// Made by scenes/embed.cmake; do not edit.\n#include \"scenes/embedded.h\"\n\nnamespace framesim {\n")
-string(APPEND out "const std::vector<EmbeddedFile>& embedded_files() {\n  static const std::vector<EmbeddedFile> files = {\n")
-file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*.toml)
+# Writes OUTPUT: a C++ file with the text of every file under ROOT whose name ends in .EXTENSION, as FUNCTION() of HEADER;
+# by default the TOML files, for registry.cpp.
+if(NOT DEFINED EXTENSION)
+  set(EXTENSION toml)
+  set(HEADER scenes/embedded.h)
+  set(FUNCTION embedded_files)
+endif()
+set(out "// Made by scenes/embed.cmake; do not edit.\n#include \"${HEADER}\"\n\nnamespace framesim {\n")
+string(APPEND out "const std::vector<EmbeddedFile>& ${FUNCTION}() {\n  static const std::vector<EmbeddedFile> files = {\n")
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*.${EXTENSION})
 list(SORT files)
 foreach(name ${files})
   file(READ ${ROOT}/${name} text)

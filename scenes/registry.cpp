@@ -29,6 +29,8 @@ constexpr std::string_view kMachines[] = {
     "computer2",     "iphone", "ipad",
     "vrvis2002",    // Zach et al. 2002
     "desktop2020",  // SRGGE 2020
+    // Fitted to the papers' figures, for `framesim reproduce`.
+    "graphicon2005-fitted", "computer1-fitted", "computer2-fitted", "iphone-fitted", "ipad-fitted",
 };
 
 // `file` as messages name it keeps its bytes here for good.

@@ -26,8 +26,8 @@ namespace framesim {
   X(double, budget_s, "s", "budget for drawing that the planner gave")                                     \
   X(double, planned_cost_s, "s", "estimated cost of the selection")                                        \
   X(double, benefit, "", "common benefit of the selection")                                                \
-  X(double, finest_benefit, "", "common benefit if everything visible were drawn at its finest")           \
-  X(double, bound, "", "no selection within the budget has more benefit; NaN if it was not asked for")        \
+  X(double, finest_benefit, "", "common benefit if time did not matter: all finest, or coarser where more")  \
+  X(double, bound, "", "most benefit within the drawing time if decisions took none; NaN if not asked for")     \
   X(double, coarsest_benefit, "", "... and that of everything at its coarsest")                            \
   X(std::int64_t, visibility_tests, "", "bounds tested")                                                   \
   X(std::int64_t, visible, "", "visible items")                                                            \

@@ -72,10 +72,9 @@ bool keeps_budget(const FrameRecord& r) { return r.planned_cost_s <= r.budget_s 
 // The bound lies above all-coarsest by more than rounding.
 bool has_choice(const FrameRecord& r) { return r.bound - r.coarsest_benefit > 1e-9 * r.bound; }
 
-// Against the bound, over the frames that keep their budget: more can be had for more. NaN without such frames, and
-// without bounds. A frame without a choice (the bound is that of all-coarsest) has no gap.
+// NaN without bounds. A frame without a choice (the bound is that of all-coarsest) has no gap.
 void summarise_gaps(std::span<const FrameRecord> records, Summary& summary) {
-  const auto bounded = [](const FrameRecord& r) { return std::isfinite(r.bound) && keeps_budget(r); };
+  const auto bounded = [](const FrameRecord& r) { return std::isfinite(r.bound); };
   summary.bound_share = mean_where(
       records, kNone, [&](const FrameRecord& r) { return bounded(r) && r.bound > 0; },
       [](const FrameRecord& r) { return r.benefit / r.bound; });

@@ -25,9 +25,9 @@ namespace framesim {
   X(p95_s, "s", "95th percentile of frame time")                                                             \
   X(p99_s, "s", "99th percentile of frame time")                                                             \
   X(over_target, "", "share of frames longer than the target")                                               \
-  X(benefit_share, "", "common benefit over that of everything visible at its finest, mean over frames")     \
-  X(bound_share, "", "common benefit over its upper bound within the budget, mean over frames that keep it")  \
-  X(ngap, "", "(bound - benefit) / (bound - benefit of all-coarsest), mean over frames that keep the budget") \
+  X(benefit_share, "", "common benefit over the most that the frame could have without a budget, mean; 0..1") \
+  X(bound_share, "", "common benefit over its upper bound if decisions took no time, mean over frames")         \
+  X(ngap, "", "(bound - benefit) / (bound - benefit of all-coarsest), mean over frames")                        \
   X(over_budget, "", "share of frames whose estimated cost exceeds the budget")                              \
   X(switches, "", "level switches per frame")                                                                \
   X(operations, "", "operations counted by the policy per frame")                                            \

@@ -2,22 +2,15 @@
 
 #include <algorithm>
 
+#include "sim/stand_in.h"
 #include "sim/statistics.h"
 
 namespace framesim {
 namespace {
 
-// The rung of the stand-in ladder 1, 1/2, 1/4 ... that a resolution reaches, so that level switches of continuous and
-// discrete levels count the same thing.
-std::int16_t rung(double resolution, int rungs) {
-  int level = rungs - 1;
-  for (double x = resolution; x < 1 && level > 0; x *= 2) --level;
-  return static_cast<std::int16_t>(level);
-}
-
 std::int16_t level_code(const Workload& workload, const Selection& selection, std::size_t item) {
   if (selection.level[item] == kNotDrawn || workload.kind[item] != ItemKind::curve) return selection.level[item];
-  return rung(selection.resolution[item], workload.type_of(item).stand_in_levels);
+  return rung_of(selection.resolution[item], workload.type_of(item).stand_in_levels);
 }
 
 // Where a drawn item stands between its coarsest (0) and finest (1) choice.
@@ -27,6 +20,16 @@ double fineness(const Workload& workload, const Selection& selection, std::size_
   const double part = selection.resolution[item];
   if (levels == 1) return part;
   return part * selection.level[item] / static_cast<double>(levels - 1);
+}
+
+// What the item itself is worth at its best. Mostly the finest level, but not always: after a change of level is priced
+// (effects/hysteresis.cpp) or with stated benefits a coarser one can be worth more. 0 for a bundle.
+double most_benefit(const Workload& workload, std::size_t item) {
+  double most = 0;
+  for (std::uint32_t k = workload.level_begin[item]; k < workload.level_begin[item + 1]; ++k) {
+    most = std::max(most, workload.benefit[k]);
+  }
+  return most;
 }
 
 // Drawn items by fineness. Each limit is counted apart, without a branch: which bin an item falls into cannot be guessed.
@@ -61,19 +64,40 @@ void PictureRecorder::record(const Workload& workload, const Selection& selectio
 }
 
 void PictureRecorder::record_flat(const Workload& workload, const Selection& selection, FrameRecord& record) const {
-  CompensatedSum finest;
+  CompensatedSum most;
   Mix mix;
   for (std::size_t i = 0; i < workload.size(); ++i) {
     const bool leaf = workload.kind[i] != ItemKind::bundle;
-    if (leaf) finest.add(workload.benefit[workload.finest(i)]);
+    most.add(most_benefit(workload, i));
     if (selection.level[i] != kNotDrawn) {
       mix.add(fineness(workload, selection, i));
     } else if (leaf) {
       ++record.mix_none;
     }
   }
-  record.finest_benefit = finest.value();
+  record.finest_benefit = most.value();
   mix.write(record);
+}
+
+// The benefit of the best cut. A node can be worth more than what is below it: it stands for leaves too that are culled as too
+// small to see, and the benefit of a group of trees is no sum over its trees. Children come before their parent; then the cut
+// is summed from the top.
+double PictureRecorder::best_cut(const Workload& workload) {
+  const std::size_t n = workload.size();
+  most_.resize(n);
+  draws_itself_.resize(n);
+  for (std::size_t i = n; i-- > 0;) {
+    double below = 0;
+    for (std::size_t c = i + 1; c < workload.subtree_end[i]; c = workload.subtree_end[c]) below += most_[c];
+    const double own = most_benefit(workload, i);
+    draws_itself_[i] = own > below || workload.subtree_end[i] == i + 1;
+    most_[i] = draws_itself_[i] ? own : below;
+  }
+  CompensatedSum sum;
+  for (std::size_t i = 0; i < n; i = draws_itself_[i] ? workload.subtree_end[i] : i + 1) {
+    if (draws_itself_[i]) sum.add(most_[i]);
+  }
+  return sum.value();
 }
 
 // A drawn node stands for its subtree, and is the coarser the higher it is.
@@ -85,14 +109,10 @@ void PictureRecorder::record_tree(const Workload& workload, const Selection& sel
       height_[i] = std::max<std::uint16_t>(height_[i], static_cast<std::uint16_t>(height_[c] + 1));
     }
   }
-  CompensatedSum finest;
+  record.finest_benefit = best_cut(workload);
   std::uint16_t tallest = 1;
   const auto is_leaf = [&](std::size_t i) { return height_[i] == 0 && workload.kind[i] != ItemKind::bundle; };
-  for (std::size_t i = 0; i < n; ++i) {
-    if (is_leaf(i)) finest.add(workload.benefit[workload.finest(i)]);
-    tallest = std::max(tallest, height_[i]);
-  }
-  record.finest_benefit = finest.value();
+  for (std::size_t i = 0; i < n; ++i) tallest = std::max(tallest, height_[i]);
   Mix mix;
   for (std::size_t i = 0; i < n;) {
     if (selection.level[i] == kNotDrawn) {

@@ -18,9 +18,13 @@ class PictureRecorder {
  private:
   void record_flat(const Workload& workload, const Selection& selection, FrameRecord& record) const;
   void record_tree(const Workload& workload, const Selection& selection, FrameRecord& record);
+  double best_cut(const Workload& workload);
   void record_switches(const Workload& workload, const Selection& selection, FrameRecord& record);
 
   std::vector<std::uint16_t> height_;  // trees: levels of nodes below an item
+  // Trees: the most that a node's subtree can be worth, and whether it is so by the node itself.
+  std::vector<double> most_;
+  std::vector<std::uint8_t> draws_itself_;
   // The items of the last frame, by ascending id, and their levels; the levels of this one.
   std::vector<InstanceId> last_id_;
   std::vector<std::int16_t> last_level_, level_;

@@ -105,13 +105,13 @@ void Simulation::run_logic() {
   clock_.end_of(StepPart::logic);
 }
 
-double Simulation::plan_budget() const {
+double Simulation::plan_budget(double decide_s) const {
   if (!config_.budgets_s.empty()) return config_.budgets_s[static_cast<std::size_t>(record_.frame)];
   const MachineProfile& machine = parts_.machine.profile();
   return parts_.planner.budget_s(
       {.target_s = config_.target_s,
        .before_draw_s = parts_.estimator.logic_s(record_.visible) + to_seconds(Picoseconds(record_.visibility_ps)) +
-                        last_decide_s_ + machine.frame_setup_s,
+                        decide_s + machine.frame_setup_s,
        .submit_s = machine.submit_s * static_cast<double>(record_.visible),
        .clear_s = machine.clear_s,
        .swap_s = machine.swap_s,
@@ -119,7 +119,7 @@ double Simulation::plan_budget() const {
 }
 
 void Simulation::decide() {
-  const double budget_s = plan_budget();
+  const double budget_s = plan_budget(last_decide_s_);
   record_.budget_s = budget_s;
   selection_.reset(workload_.size());
   parts_.policy.select(
@@ -136,9 +136,10 @@ void Simulation::decide() {
   if (config_.bound) find_bound();
 }
 
-// Within the planner's budget, on what the policy was given.
+// How good the frame could have been, on what the policy was given: within the planner's budget if decisions took no time, so
+// that a slow decision is a loss; or within what the selection costs, where that is more, as more can be had for more.
 void Simulation::find_bound() {
-  const FrameBound bound = bound_.compute(workload_, record_.budget_s);
+  const FrameBound bound = bound_.compute(workload_, std::max(plan_budget(0), record_.planned_cost_s));
   record_.bound = bound.benefit;
   record_.coarsest_benefit = bound.coarsest_benefit;
   clock_.end_of(StepPart::bound);

@@ -79,7 +79,7 @@ class Simulation {
   void run(Stage stage);
   void run_logic();
   void decide();
-  double plan_budget() const;
+  double plan_budget(double decide_s) const;
   void find_bound();
   void submit();
   void show();

@@ -11,10 +11,13 @@ namespace framesim {
 // Welford 1962.
 void Moments::add(double x) {
   ++count_;
-  const double from_old_mean = x - mean_;
-  mean_ += from_old_mean / static_cast<double>(count_);
-  squares_ += from_old_mean * (x - mean_);
+  sum_.add(x);
+  const double from_old_mean = x - running_mean_;
+  running_mean_ += from_old_mean / static_cast<double>(count_);
+  squares_ += from_old_mean * (x - running_mean_);
 }
+
+double Moments::mean() const { return count_ == 0 ? 0 : sum_.value() / static_cast<double>(count_); }
 
 double Moments::deviation() const {
   if (count_ < 2) return 0;

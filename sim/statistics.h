@@ -26,17 +26,19 @@ class CompensatedSum {
   double correction_ = 0;
 };
 
-// Mean and standard deviation by Welford's update.
+// Mean by compensated sum, standard deviation by Welford's update, whose running mean would round once a value: up to
+// (n+1)/4 eps, where the sum's is 1 eps.
 class Moments {
  public:
   void add(double x);
   std::int64_t count() const { return count_; }
-  double mean() const { return mean_; }  // 0 if empty
-  double deviation() const;              // sample standard deviation (n-1); 0 for fewer than two
+  double mean() const;       // 0 if empty
+  double deviation() const;  // sample standard deviation (n-1); 0 for fewer than two
 
  private:
   std::int64_t count_ = 0;
-  double mean_ = 0;
+  CompensatedSum sum_;
+  double running_mean_ = 0;
   double squares_ = 0;
 };
 

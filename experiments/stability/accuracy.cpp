@@ -16,8 +16,11 @@ double error_eps(double computed, const Exact& expected) {
   return std::min(error.convert_to<double>(), kMaximalEps);
 }
 
-void ErrorCollector::add(double computed, const Exact& expected) {
-  const double error = error_eps(computed, expected);
+void ErrorCollector::add(double computed, const Exact& expected, double condition) {
+  add_error(error_eps(computed, expected) / condition);
+}
+
+void ErrorCollector::add_error(double error) {
   ++cases_;
   max_ = std::max(max_, error);
   squares_ += error * error;
@@ -37,12 +40,24 @@ StabilityRow make_row(std::string group, std::string quantity, std::string naive
   return row;
 }
 
+namespace {
+
+std::vector<AddRows>& more_rows() {
+  static std::vector<AddRows> more;
+  return more;
+}
+
+}  // namespace
+
+MoreStabilityRows::MoreStabilityRows(AddRows add) { more_rows().push_back(add); }
+MoreStabilityRows::~MoreStabilityRows() { more_rows().pop_back(); }
+
 std::vector<StabilityRow> stability_rows() {
   std::vector<StabilityRow> rows;
-  add_sum_rows(rows);
-  add_statistics_rows(rows);
-  add_estimator_rows(rows);
-  add_time_rows(rows);
+  for (const AddRows add : {add_sum_rows, add_statistics_rows, add_random_rows, add_estimator_rows, add_curve_rows,
+                            add_policy_rows, add_hull_rows, add_time_rows, add_overlap_rows})
+    add(rows);
+  for (const AddRows add : more_rows()) add(rows);
   return rows;
 }
 

@@ -16,6 +16,7 @@ using Exact = boost::multiprecision::cpp_bin_float_50;
 struct Accuracy {
   double max_eps = 0;
   double mean_eps = 0;  // root mean square
+  bool operator==(const Accuracy&) const = default;
 };
 inline constexpr double kMaximalEps = 0x1p52;
 
@@ -23,7 +24,11 @@ double error_eps(double computed, const Exact& expected);
 
 class ErrorCollector {
  public:
-  void add(double computed, const Exact& expected);
+  // `condition` >= 1: by how much the quantity multiplies a relative error of its data. The error is divided by it, so that
+  // what remains is the method's own.
+  void add(double computed, const Exact& expected, double condition = 1);
+  // An error that is known already, in eps.
+  void add_error(double error_eps);
   std::int64_t cases() const { return cases_; }
   Accuracy accuracy() const;
 
@@ -48,9 +53,24 @@ StabilityRow make_row(std::string group, std::string quantity, std::string naive
 // Every row, in the order of the table; the same bits whatever compiler and optimisation. A second or so.
 std::vector<StabilityRow> stability_rows();
 // ... and its parts, a file each.
+using AddRows = void (*)(std::vector<StabilityRow>& rows);
 void add_sum_rows(std::vector<StabilityRow>& rows);
 void add_statistics_rows(std::vector<StabilityRow>& rows);
+void add_random_rows(std::vector<StabilityRow>& rows);
 void add_estimator_rows(std::vector<StabilityRow>& rows);
+void add_curve_rows(std::vector<StabilityRow>& rows);
+void add_policy_rows(std::vector<StabilityRow>& rows);
+void add_hull_rows(std::vector<StabilityRow>& rows);
 void add_time_rows(std::vector<StabilityRow>& rows);
+void add_overlap_rows(std::vector<StabilityRow>& rows);
+
+// Rows of formulas that a program brings itself, at the table's end while this lives. Not for several threads.
+class MoreStabilityRows {
+ public:
+  explicit MoreStabilityRows(AddRows add);
+  ~MoreStabilityRows();
+  MoreStabilityRows(const MoreStabilityRows&) = delete;
+  MoreStabilityRows& operator=(const MoreStabilityRows&) = delete;
+};
 
 }  // namespace framesim

@@ -20,20 +20,33 @@ std::vector<LinearSample> nearly_proportional(std::int64_t apart) {
   return samples;
 }
 
-void add_coefficients(std::vector<StabilityRow>& rows) {
-  ErrorCollector ours, pairs;
-  for (const std::int64_t apart : {100'000'000, 10'000'000, 1'000'000, 100'000}) {
-    const std::vector<LinearSample> samples = nearly_proportional(apart);
-    const LinearCosts fit = fit_least_squares(samples);
-    const LinearCosts printed = fit_pairs(samples).value_or(LinearCosts{});
-    ours.add(fit.c1, 3);
-    ours.add(fit.c2, 5);
-    pairs.add(printed.c1, 3);
-    pairs.add(printed.c2, 5);
+// Of the two columns, each scaled to length one: sqrt((1 + r) / (1 - r)) with r their cosine.
+double condition_of(const std::vector<LinearSample>& samples) {
+  Exact vv = 0, ss = 0, vs = 0;
+  for (const LinearSample& sample : samples) {
+    const Exact v = sample.polygons, s = sample.texture_bytes;
+    vv += v * v;
+    ss += s * s;
+    vs += v * s;
   }
-  // Condition up to 1e5, so that many eps are lost by the data themselves.
-  rows.push_back(make_row("trees proportional to 1e-1 .. 1e-4", "c1, c2 (least squares)",
-                          "mean over pairs (Dong eq. 7, 8)", 1e6, ours, pairs));
+  const Exact cosine = vs / sqrt(Exact(vv * ss));
+  return Exact(sqrt(Exact((1 + cosine) / (1 - cosine)))).convert_to<double>();
+}
+
+void add_coefficients(std::vector<StabilityRow>& rows, std::int64_t apart, const char* group) {
+  const std::vector<LinearSample> samples = nearly_proportional(apart);
+  ErrorCollector ours, pairs;
+  const LinearCosts fit = fit_least_squares(samples);
+  const LinearCosts printed = fit_pairs(samples).value_or(LinearCosts{});
+  ours.add(fit.c1, 3);
+  ours.add(fit.c2, 5);
+  pairs.add(printed.c1, 3);
+  pairs.add(printed.c2, 5);
+  // Orthogonalised m x n equations without residual: matrix and right-hand side as if each were wrong by m n eps/2 (Higham
+  // 2002, theorem 20.3), which the condition multiplies; the roundings add up as random ones do, sqrt(m n) eps/2 (Higham and
+  // Mary 2019). m = 8, n = 2; c1 and c2 are a half or more of the solution's length: 2 * 4 eps/2 * 2 = 8 eps conditions.
+  rows.push_back(make_row(group, "c1, c2 (least squares)", "mean over pairs (Dong eq. 7, 8)", 8 * condition_of(samples), ours,
+                          pairs));
 }
 
 // tan is ill-conditioned at a right angle: theta's own rounding is not counted, since 50 digits see the same theta.
@@ -56,7 +69,10 @@ void add_importance(std::vector<StabilityRow>& rows) {
 }  // namespace
 
 void add_estimator_rows(std::vector<StabilityRow>& rows) {
-  add_coefficients(rows);
+  add_coefficients(rows, 100'000'000, "trees proportional to 1e-1");
+  add_coefficients(rows, 10'000'000, "trees proportional to 1e-2");
+  add_coefficients(rows, 1'000'000, "trees proportional to 1e-3");
+  add_coefficients(rows, 100'000, "trees proportional to 1e-4");
   add_importance(rows);
 }
 

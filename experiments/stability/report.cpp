@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace framesim {
 namespace {
 
@@ -12,10 +14,6 @@ std::string cell(const StabilityRow& row, std::string_view line_break) {
   if (row.naive) text += fmt::format("{}naive: {}", line_break, show(*row.naive));
   if (!row.within()) text += fmt::format("{}OUTSIDE its bound", line_break);
   return text;
-}
-
-std::string csv_number(const std::optional<Accuracy>& a, double Accuracy::*field) {
-  return a ? fmt::format("{}", (*a).*field) : "NA";
 }
 
 std::string escaped(std::string_view text) {
@@ -39,14 +37,23 @@ std::string this_compiler() {
 #endif
 }
 
-std::string stability_csv(const std::vector<StabilityRow>& rows) {
-  std::string text = "group,quantity,naive_form,cases,max_eps,mean_eps,naive_max_eps,naive_mean_eps,bound_eps\n";
-  for (const StabilityRow& row : rows) {
-    text += fmt::format("\"{}\",\"{}\",\"{}\",{},{},{},{},{},{}\n", row.group, row.quantity, row.naive_form, row.cases,
-                        row.ours.max_eps, row.ours.mean_eps, csv_number(row.naive, &Accuracy::max_eps),
-                        csv_number(row.naive, &Accuracy::mean_eps), row.bound_eps);
+std::vector<std::string> differing_rows(const std::vector<StabilityColumn>& columns) {
+  std::vector<std::string> names;
+  for (std::size_t r = 0; r < columns.front().rows.size(); ++r) {
+    const StabilityRow& row = columns.front().rows[r];
+    const auto same = [&](const StabilityColumn& other) {
+      return other.rows[r].ours == row.ours && other.rows[r].naive == row.naive;
+    };
+    if (!std::all_of(columns.begin(), columns.end(), same)) names.push_back(row.group + ", " + row.quantity);
   }
-  return text;
+  return names;
+}
+
+std::string describe_likeness(const std::vector<StabilityColumn>& columns) {
+  const std::vector<std::string> differing = differing_rows(columns);
+  if (differing.empty()) return fmt::format("All {} builds gave identical numbers.", columns.size());
+  return fmt::format("The builds differ in {} of {} rows, first in: {}.", differing.size(), columns.front().rows.size(),
+                     differing.front());
 }
 
 std::string stability_markdown(const std::vector<StabilityColumn>& columns) {
@@ -63,7 +70,7 @@ std::string stability_markdown(const std::vector<StabilityColumn>& columns) {
     for (const StabilityColumn& column : columns) text += fmt::format(" {} |", cell(column.rows[r], "<br>"));
     text += '\n';
   }
-  return text;
+  return columns.size() == 1 ? text : text + '\n' + describe_likeness(columns) + '\n';
 }
 
 std::string stability_html(const std::vector<StabilityColumn>& columns) {
@@ -80,7 +87,8 @@ std::string stability_html(const std::vector<StabilityColumn>& columns) {
     for (const StabilityColumn& column : columns) text += fmt::format("<td>{}</td>", cell(column.rows[r], "<br>"));
     text += "</tr>\n";
   }
-  return text + "</table>\n";
+  text += "</table>\n";
+  return columns.size() == 1 ? text : text + "<p>" + escaped(describe_likeness(columns)) + "</p>\n";
 }
 
 }  // namespace framesim

@@ -42,31 +42,36 @@ double deviation_by_squares(const std::vector<double>& x) {
 }
 
 void add_moments(std::vector<StabilityRow>& rows) {
-  ErrorCollector mean, table_mean, naive_mean, deviation, naive_deviation;
+  ErrorCollector mean, running, table_mean, naive_mean, deviation, naive_deviation;
   for (const int count : {2, 3, 10, 600, 20'000}) {
     std::vector<double> x;
     std::vector<FrameRecord> records(1);  // frame 0 is left out
     Moments moments;
-    double sum = 0;
+    double sum = 0, running_mean = 0;
     for (const std::int64_t t : steady_frames_ps(count)) {
       x.push_back(to_seconds(Picoseconds{t}));
       records.emplace_back();
       records.back().frame_time_ps = t;
       moments.add(x.back());
       sum += x.back();
+      running_mean += (x.back() - running_mean) / static_cast<double>(x.size());
     }
     const Reference r = reference(x);
     mean.add(moments.mean(), r.mean);
+    running.add(running_mean, r.mean);
     table_mean.add(summarise(records, 0.01667).mean_s, r.mean);
     naive_mean.add(sum / count, r.mean);
     deviation.add(moments.deviation(), r.deviation);
     naive_deviation.add(deviation_by_squares(x), r.deviation);
   }
   const char* const group = "2 to 20,000 frames of 16.67 ms +- 50 ns";
-  // A running mean rounds once a frame: sqrt(20,000) eps. Here it is the worse form, which is why tables use the sum below.
-  rows.push_back(make_row(group, "running mean (Welford)", "sum / n", 141, mean, naive_mean));
-  rows.push_back(make_row(group, "mean (Neumaier), as in tables", "sum / n", 1, table_mean, naive_mean));
-  // The mean is known to eps/2 of 16.67 ms, which is 3e5 times the deviation: Welford's own limit.
+  // A compensated sum of values of one sign is its exact sum rounded once (eps/2; its n^2 eps^2 is nothing here), and the
+  // division rounds once more: 1 eps. A running mean rounds every time: e_k = e_(k-1) (1 - 1/k) + eps/2, so (n+1)/4 eps.
+  rows.push_back(make_row(group, "mean of moments (Neumaier)", "running mean (Welford)", 1, mean, running));
+  rows.push_back(make_row(group, "mean, as in tables (Neumaier)", "sum / n", 1, table_mean, naive_mean));
+  // Two values d apart: S = d * (x_2 - mean), where the mean is rounded to eps/2 of 16.67 ms, so that the deviation is wrong
+  // by eps/2 * 16.67 ms / d; the first two are 48.3 ns apart: 1.73e5 eps. With more, errors of the running mean, random
+  // with deviation sqrt(k)/3 * eps/2 of it after k, add up to 1/sqrt(18) of eps/2 * mean / deviation whatever n: 7e4 eps.
   rows.push_back(make_row(group, "deviation (Welford)", "E[x^2] - mean^2", 2e5, deviation, naive_deviation));
 }
 

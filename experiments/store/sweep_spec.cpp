@@ -7,6 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <limits>
+#include <set>
 
 #include "experiments/options.h"
 #include "experiments/store/sha256.h"
@@ -44,12 +45,12 @@ std::vector<Word> words(const TableReader& root, std::string_view key) {
 
 std::vector<Spec> specs(const TableReader& root, std::string_view key) {
   std::vector<Spec> list;
-  for (const Word& word : words(root, key)) list.push_back(parse_spec(word.text, word.where));
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (to_string(list[i]) != to_string(list[j])) continue;
-      throw InputError(list[i].where, fmt::format("{}: {} is there twice", key, framesim::quoted(to_string(list[i]))));
-    }
+  std::set<std::string> known;
+  for (const Word& word : words(root, key)) {
+    list.push_back(parse_spec(word.text, word.where));
+    const std::string text = to_string(list.back());
+    if (!known.insert(text).second)
+      throw InputError(word.where, fmt::format("{}: {} is there twice", key, framesim::quoted(text)));
   }
   return list;
 }
@@ -90,40 +91,44 @@ Spec with(Spec spec, const Setting& setting) {
   return spec;
 }
 
-// Whether anything of that name was there to be varied.
-bool vary(std::vector<Spec>& list, const std::string& name, const std::vector<Setting>& values) {
+void vary(std::vector<Spec>& list, const std::string& name, const std::vector<Setting>& values) {
   std::vector<Spec> varied;
-  bool found = false;
   for (const Spec& spec : list) {
     if (spec.name != name) {
       varied.push_back(spec);
       continue;
     }
-    found = true;
     for (const Setting& value : values) varied.push_back(with(spec, value));
   }
   list = std::move(varied);
-  return found;
 }
 
-bool vary_effects(std::vector<std::vector<Spec>>& lists, const std::string& name, const std::vector<Setting>& values) {
+void vary_effects(std::vector<std::vector<Spec>>& lists, const std::string& name, const std::vector<Setting>& values) {
   std::vector<std::vector<Spec>> varied;
-  bool found = false;
   for (const std::vector<Spec>& list : lists) {
     const auto at = std::find_if(list.begin(), list.end(), [&](const Spec& spec) { return spec.name == name; });
     if (at == list.end()) {
       varied.push_back(list);
       continue;
     }
-    found = true;
     for (const Setting& value : values) {
       varied.push_back(list);
       varied.back()[static_cast<std::size_t>(at - list.begin())] = with(*at, value);
     }
   }
   lists = std::move(varied);
-  return found;
 }
+
+// How many entries of the list will be there once for each value.
+std::size_t count_varied(const Lists& lists, std::size_t of, const std::string& name) {
+  const auto named = [&](const Spec& spec) { return spec.name == name; };
+  const auto has_one = [&](const std::vector<Spec>& list) { return std::any_of(list.begin(), list.end(), named); };
+  const std::vector<std::vector<Spec>>& effects = lists.effects;
+  if (of == kEffect) return static_cast<std::size_t>(std::count_if(effects.begin(), effects.end(), has_one));
+  return static_cast<std::size_t>(std::count_if(lists.specs[of].begin(), lists.specs[of].end(), named));
+}
+
+std::string too_many_runs() { return fmt::format("the sweep has more than {} runs", kMostRuns); }
 
 void apply_vary(const TableReader& root, Lists& lists) {
   for (const TomlNode* node : root.tables("vary")) {
@@ -131,10 +136,13 @@ void apply_vary(const TableReader& root, Lists& lists) {
     const std::size_t of = table.word("of", kVaried);
     const std::string name = table.text("name");
     const std::vector<Setting> values = vary_values(table);
-    const bool found = of == kEffect ? vary_effects(lists.effects, name, values) : vary(lists.specs[of], name, values);
-    if (!found) {
+    const std::size_t found = count_varied(lists, of, name);
+    if (found == 0) {
       table.refuse("name", fmt::format("there is no {} {} in this file to vary", kVaried[of], framesim::quoted(name)));
     }
+    // Several [[vary]] multiply: a few lines of text could ask for any number of entries.
+    if (found * values.size() > static_cast<std::size_t>(kMostRuns)) throw InputError(table.where(), too_many_runs());
+    of == kEffect ? vary_effects(lists.effects, name, values) : vary(lists.specs[of], name, values);
   }
 }
 
@@ -219,10 +227,14 @@ std::vector<std::optional<Overlap>> read_overlaps(const TableReader& root) {
 std::vector<RunSpec> read_variants(const TableReader& root, const Lists& lists, const RunSpec& common) {
   std::vector<std::optional<Spec>> planners(lists.specs[kPlanner].begin(), lists.specs[kPlanner].end());
   if (planners.empty()) planners.push_back(std::nullopt);
+  const std::vector<std::optional<Overlap>> overlaps = read_overlaps(root);
+  const double count = static_cast<double>(lists.specs[kEstimator].size()) * static_cast<double>(planners.size()) *
+                       static_cast<double>(overlaps.size()) * static_cast<double>(lists.effects.size());
+  if (count > static_cast<double>(kMostRuns)) throw InputError(root.where(), too_many_runs());
   std::vector<RunSpec> variants;
   for (const Spec& estimator : lists.specs[kEstimator]) {
     for (const std::optional<Spec>& planner : planners) {
-      for (const std::optional<Overlap>& overlap : read_overlaps(root)) {
+      for (const std::optional<Overlap>& overlap : overlaps) {
         for (const std::vector<Spec>& effects : lists.effects) {
           variants.push_back(common);
           RunSpec& variant = variants.back();
@@ -305,7 +317,7 @@ class SweepPlanner {
     job.spec.seed = static_cast<std::uint64_t>(seeds_.first);
     check_parts(job.spec, *job.scene);
     if (seeds_.count > kMostRuns - static_cast<std::int64_t>(sweep_.runs.size())) {
-      throw InputError(root_.where(), fmt::format("the sweep has more than {} runs", kMostRuns));
+      throw InputError(root_.where(), too_many_runs());
     }
     for (std::int64_t s = 0; s < seeds_.count; ++s) {
       sweep_.runs.push_back(job);

@@ -142,8 +142,11 @@ WorkPanel measure_size(const Scene& scene, std::size_t items, std::map<std::stri
       const std::string text = setting.empty() ? curve.method : fmt::format("{}:{}", curve.method, setting);
       double& last_s = slowest_s[text];
       if (last_s > kLongestFrame_s) {
-        curve.points.push_back(
-            {.setting = setting, .failure = fmt::format("more than {} s a frame at fewer items", kLongestFrame_s)});
+        curve.points.push_back({.setting = setting,
+                                .failure = fmt::format("not run: {:.2g} s a frame expected, more than {} s, from ten "
+                                                       "times as long for each tenfold number of items",
+                                                       last_s, kLongestFrame_s)});
+        last_s *= 10;
         progress.advance();
         continue;
       }
@@ -170,27 +173,27 @@ std::size_t settings_in_all() {
 
 }  // namespace
 
-Tradeoff tradeoff_decision(std::size_t most_items, bool quiet) {
+Tradeoff tradeoff_decision(const TradeoffScope& scope) {
   Tradeoff tradeoff{
       .title = "Decision",
       .problem = fmt::format(
-          "Each policy decides about workloads with each built-in scene's mix of items, made of copies "
+          "Each policy decides about workloads with each scene's mix of items, made of copies "
           "of its frames, at sizes from 10^2 to {}; the budget is {:.0f} % of the way from the cost of "
           "everything at its coarsest to that of everything at its finest. Frames follow each other as in a run; "
           "the first, cold one is not counted. Costs are exact.",
-          show_size(most_items), 100 * kBudgetShare),
+          show_size(scope.most_items), 100 * kBudgetShare),
       .reference =
           "the upper bound on the benefit that any selection within the budget can have (linear relaxation), for the "
           "same workload; ngap = (bound - benefit) / (bound - benefit of all-coarsest)",
       .diagrams = {}};
   std::vector<std::size_t> sizes;
-  for (std::size_t items = 100; items <= most_items; items *= 10) sizes.push_back(items);
-  Progress progress("decisions", static_cast<std::int64_t>(sizes.size() * settings_in_all() * built_in_scenes().size()),
-                    quiet);
-  for (const BuiltIn& name : built_in_scenes()) {
-    const Scene scene = load_scene({std::string(name.name), {}, {"tradeoff"}});
-    WorkDiagram diagram{.name = fmt::format("decision-{}", name.name),
-                        .title = fmt::format("What accuracy of the decision costs: {}", name.name),
+  for (std::size_t items = 100; items <= scope.most_items; items *= 10) sizes.push_back(items);
+  Progress progress("decisions", static_cast<std::int64_t>(sizes.size() * settings_in_all() * scope.scenes.size()),
+                    scope.quiet);
+  for (const Spec& spec : scope.scenes) {
+    const Scene scene = load_scene(spec);
+    WorkDiagram diagram{.name = fmt::format("decision-{}", scene.name),
+                        .title = fmt::format("What accuracy of the decision costs: {}", scene.name),
                         .error = "ngap against the bound",
                         .operation = "operations a frame, counted by the policy",
                         .floor = 1e-9,

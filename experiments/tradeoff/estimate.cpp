@@ -53,12 +53,14 @@ Errors errors_of(const RunResult& result) {
   return errors;
 }
 
-void measure_scene(std::string_view name, WorkPanel& drawing, WorkPanel& frame, Progress& progress) {
-  const Scene scene = load_scene({std::string(name), {}, {"tradeoff"}});
+void measure_scene(const Spec& scene_spec, std::int64_t frames, WorkPanel& drawing, WorkPanel& frame,
+                   Progress& progress) {
+  const Scene scene = load_scene(scene_spec);
+  drawing.title = frame.title = scene.name;
   for (const Knob& knob : knobs()) {
     WorkCurve of_drawing{.method = std::string(knob.method), .points = {}}, of_frame = of_drawing;
     for (const std::string& setting : knob.settings) {
-      RunSpec spec = default_run(name, "robin-hood");
+      RunSpec spec = default_run(scene_spec, "robin-hood", frames);
       spec.target_s = scene.targets_s.front();
       spec.estimator =
           parse_spec(setting.empty() ? std::string(knob.estimator) : fmt::format("{}:{}", knob.estimator, setting));
@@ -75,10 +77,10 @@ void measure_scene(std::string_view name, WorkPanel& drawing, WorkPanel& frame, 
 
 }  // namespace
 
-Tradeoff tradeoff_estimate(bool quiet) {
+Tradeoff tradeoff_estimate(const TradeoffScope& scope) {
   Tradeoff tradeoff{.title = "Cost estimate",
                     .problem =
-                        "Each built-in scene under robin-hood at its first target, with each estimator over its "
+                        "Each scene under robin-hood at its first target, with each estimator over its "
                         "sampling density and its feedback "
                         "gain. Time is that of pricing a frame's items and of correcting the estimate after it; "
                         "counted are the benchmark's draws before "
@@ -102,11 +104,11 @@ Tradeoff tradeoff_estimate(bool quiet) {
                     .panels = {}};
   std::size_t settings = 0;
   for (const Knob& knob : knobs()) settings += knob.settings.size();
-  Progress progress("runs", static_cast<std::int64_t>(built_in_scenes().size() * settings), quiet);
-  for (const BuiltIn& scene : built_in_scenes()) {
-    drawing.panels.push_back({.title = std::string(scene.name), .curves = {}});
-    frame.panels.push_back({.title = std::string(scene.name), .curves = {}});
-    measure_scene(scene.name, drawing.panels.back(), frame.panels.back(), progress);
+  Progress progress("runs", static_cast<std::int64_t>(scope.scenes.size() * settings), scope.quiet);
+  for (const Spec& scene : scope.scenes) {
+    drawing.panels.emplace_back();
+    frame.panels.emplace_back();
+    measure_scene(scene, scope.frames, drawing.panels.back(), frame.panels.back(), progress);
   }
   tradeoff.diagrams = {std::move(drawing), std::move(frame)};
   return tradeoff;

@@ -137,6 +137,20 @@ std::string processor() {
   return "unknown processor";
 }
 
+// Links to what write_diagram wrote.
+std::string pictures(const WorkDiagram& diagram) {
+  std::string text;
+  for (const bool counted : {false, true}) {
+    if (has_points(diagram, counted)) {
+      text += fmt::format("![{}, {}]({}-{}.svg)\n\n", diagram.title, counted ? "counted" : "measured time", diagram.name,
+                          counted ? "operations" : "time");
+    } else {
+      text += fmt::format("No picture over {}: no setting gave a point.\n\n", counted ? "counted work" : "time");
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string tradeoff_page(const std::vector<Tradeoff>& parts, std::string_view command) {
@@ -154,8 +168,7 @@ std::string tradeoff_page(const std::vector<Tradeoff>& parts, std::string_view c
   for (const Tradeoff& part : parts) {
     text += fmt::format("\n## {}\n\nProblem: {}\n\nReference: {}.\n", part.title, part.problem, part.reference);
     for (const WorkDiagram& diagram : part.diagrams) {
-      text += fmt::format("\n### {}\n\n![{}, measured time]({}-time.svg)\n\n![{}, counted]({}-operations.svg)\n\n",
-                          diagram.title, diagram.title, diagram.name, diagram.title, diagram.name);
+      text += fmt::format("\n### {}\n\n", diagram.title) + pictures(diagram);
       text += fmt::format(
           "Reading:\n\n{}\nWhat one more digit costs, measured (digits that cost nothing more are left "
           "out):\n\n{}\n... and counted:\n\n{}\nWho failed, and "

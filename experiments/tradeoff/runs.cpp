@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenes/registry.h"
+
 namespace framesim {
 namespace {
 constexpr int kRunsMeasured = 5;  // the first is the warm-up
 }
 
-RunSpec default_run(std::string_view scene, std::string_view policy) {
+std::vector<Spec> all_scenes() {
+  std::vector<Spec> scenes;
+  for (const BuiltIn& scene : built_in_scenes()) scenes.push_back({std::string(scene.name), {}, {"tradeoff"}});
+  return scenes;
+}
+
+RunSpec default_run(const Spec& scene, std::string_view policy, std::int64_t frames) {
   RunSpec spec;
-  spec.scene = {std::string(scene), {}, {"tradeoff"}};
+  spec.scene = scene;
+  spec.frames = frames;
   spec.policy = {std::string(policy), {}, {"tradeoff"}};
   spec.profile = true;
   return spec;

@@ -10,8 +10,8 @@
 
 namespace framesim {
 
-// A run on a built-in scene at its first target with everything else at its default.
-RunSpec default_run(std::string_view scene, std::string_view policy);
+// A profiled run with everything else at its default; the target is to be set.
+RunSpec default_run(const Spec& scene, std::string_view policy, std::int64_t frames);
 
 // Runs it `kRunsMeasured` times and keeps the profile with the least time in `parts`.
 struct TimedRun {

@@ -34,9 +34,9 @@ constexpr Method kMethods[] = {
     {"events", "all effects", EngineKind::events, true, true},
 };
 
-RunSpec spec_of(std::string_view scene, const Method& method) {
-  RunSpec spec =
-      default_run(scene, "robin-hood");  // it takes nothing back from a frame: all methods see the same decisions
+RunSpec spec_of(const Spec& scene, std::int64_t frames, const Method& method) {
+  // It takes nothing back from a frame: all methods see the same decisions.
+  RunSpec spec = default_run(scene, "robin-hood", frames);
   spec.overlap = parse_overlap("staged");
   spec.engine.kind = method.engine;
   spec.no_effects = {parse_spec("all")};
@@ -65,16 +65,16 @@ WorkPoint point_of(const TimedRun& timed, std::string_view setting, const std::v
   return point;
 }
 
-WorkPanel measure_scene(std::string_view name, Progress& progress) {
-  const Scene scene = load_scene({std::string(name), {}, {"tradeoff"}});
+WorkPanel measure_scene(const Spec& scene_spec, std::int64_t frames, Progress& progress) {
+  const Scene scene = load_scene(scene_spec);
   std::vector<TimedRun> runs;
   for (const Method& method : kMethods) {
-    RunSpec spec = spec_of(name, method);
+    RunSpec spec = spec_of(scene_spec, frames, method);
     spec.target_s = scene.targets_s.front();
     runs.push_back(run_timed(spec, scene, {StepPart::logic, StepPart::effects, StepPart::engine}));
     progress.advance();
   }
-  WorkPanel panel{.title = std::string(name), .curves = {}};
+  WorkPanel panel{.title = scene.name, .curves = {}};
   for (std::size_t i = 0; i < std::size(kMethods); ++i) {
     if (panel.curves.empty() || panel.curves.back().method != kMethods[i].name)
       panel.curves.push_back({.method = std::string(kMethods[i].name), .points = {}});
@@ -85,11 +85,11 @@ WorkPanel measure_scene(std::string_view name, Progress& progress) {
 
 }  // namespace
 
-Tradeoff tradeoff_simulation(bool quiet) {
+Tradeoff tradeoff_simulation(const TradeoffScope& scope) {
   Tradeoff tradeoff{
       .title = "Simulation",
       .problem = fmt::format(
-          "Each built-in scene under robin-hood, which takes nothing back from a frame, so that all methods time the "
+          "Each scene under robin-hood, which takes nothing back from a frame, so that all methods time the "
           "same commands. Effects: {}; and, for which only events are exact, {}. A method may leave effects out.",
           fmt::join(kQueueEffects, ", "), fmt::join(kSharedEffects, ", ")),
       .reference = "frame time by the event engine with all these effects; error = |T - T_ref| / T_ref of each frame",
@@ -100,8 +100,8 @@ Tradeoff tradeoff_simulation(bool quiet) {
                       .operation = "formulas, equations or events a frame",
                       .floor = 1e-7,
                       .panels = {}};
-  Progress progress("runs", static_cast<std::int64_t>(built_in_scenes().size() * std::size(kMethods)), quiet);
-  for (const BuiltIn& scene : built_in_scenes()) diagram.panels.push_back(measure_scene(scene.name, progress));
+  Progress progress("runs", static_cast<std::int64_t>(scope.scenes.size() * std::size(kMethods)), scope.quiet);
+  for (const Spec& scene : scope.scenes) diagram.panels.push_back(measure_scene(scene, scope.frames, progress));
   tradeoff.diagrams.push_back(std::move(diagram));
   return tradeoff;
 }

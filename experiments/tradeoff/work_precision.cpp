@@ -127,6 +127,8 @@ std::string diagram_script(const WorkDiagram& diagram, bool counted) {
   return script + key_plot(methods) + "unset multiplot\n";
 }
 
+}  // namespace
+
 bool has_points(const WorkDiagram& diagram, bool counted) {
   for (const WorkPanel& panel : diagram.panels) {
     for (const WorkCurve& curve : panel.curves) {
@@ -137,8 +139,6 @@ bool has_points(const WorkDiagram& diagram, bool counted) {
   }
   return false;
 }
-
-}  // namespace
 
 void set_errors(WorkPoint& point, std::vector<double>& errors) {
   FRAMESIM_CHECK(!errors.empty(), "no frames");

@@ -54,7 +54,10 @@ std::vector<DigitCost> cost_of_digits(const WorkPanel& panel, bool counted);
 // Errors of the frames of one point, summarised; `errors` is sorted in place, not empty.
 void set_errors(WorkPoint& point, std::vector<double>& errors);
 
-// NAME.csv, NAME-time.svg, NAME-operations.svg in `folder`; returns their paths. Needs gnuplot.
+// Is there a point to draw, over measured time or over counted operations?
+bool has_points(const WorkDiagram& diagram, bool counted);
+
+// NAME.csv, and where there are points NAME-time.svg and NAME-operations.svg, in `folder`; returns their paths. Needs gnuplot.
 std::vector<std::string> write_diagram(const WorkDiagram& diagram, const std::string& folder);
 
 }  // namespace framesim

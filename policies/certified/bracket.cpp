@@ -161,7 +161,8 @@ void BracketSearch::learn(double multiplier, std::size_t open, std::size_t items
   if (!(width_ > 0)) width_ = 0.5 * static_cast<double>(kFewOpen) / kOpenOften / static_cast<double>(items + 1);
   const double most = 3.0 * kFewOpen + kManyOpenShare * static_cast<double>(items);
   if (open < kFewOpen) width_ *= 2;
-  if (static_cast<double>(open) > most) width_ /= 2;
+  // As many are open as the bracket is wide; where ties are open in any bracket, this ends at the narrowest.
+  if (static_cast<double>(open) > most) width_ *= 0.7 * most / static_cast<double>(open);
   width_ = std::clamp(width_, kNarrowest, kWidest);
   multiplier_ = multiplier;
   warm_ = true;

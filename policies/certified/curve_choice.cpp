@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "sim/stand_in.h"
 
 namespace framesim::certified {
 namespace {
@@ -24,22 +27,37 @@ double slope_below_s(const Workload& workload, std::size_t item) {
 
 }  // namespace
 
-double best_resolution(const Workload& workload, std::size_t item, double m) {
+double best_resolution_within(const Workload& workload, std::size_t item, double m, double low, double high) {
   const double knee = std::min(workload.curve_knee[item], 1.0);
   double best = 0, best_value = 0;
   const auto consider = [&](double x) {
     const double value = curve_benefit(workload, item, x) - m * curve_cost_s(workload, item, x);
-    if (x > 0 && value > best_value) best = x, best_value = value;
+    if (x > 0 && (low > 0 ? best == 0 || value > best_value : value > best_value)) best = x, best_value = value;
   };
-  if (knee > 0) consider(meeting_point(workload, item, m, slope_below_s(workload, item), knee));
-  if (knee < 1) consider(std::max(knee, meeting_point(workload, item, m, slope_above_s(workload, item), 1)));
-  consider(knee);
+  if (knee > low) {
+    const double most = std::min(knee, high);
+    consider(std::max(low, meeting_point(workload, item, m, slope_below_s(workload, item), most)));
+  }
+  if (knee < high) {
+    consider(std::max({low, knee, meeting_point(workload, item, m, slope_above_s(workload, item), high)}));
+  }
+  if (low <= knee && knee <= high) consider(knee);
   return best;
 }
 
-void CurveFill::add(const Workload& workload, std::size_t item, double x) {
+double best_resolution(const Workload& workload, std::size_t item, double m) {
+  return best_resolution_within(workload, item, m, 0, 1);
+}
+
+Rung rung_at(const Workload& workload, std::size_t item, int rung) {
+  const int rungs = workload.type_of(item).stand_in_levels;
+  return {.low = rung > 0 ? rung_resolution(rung, rungs) : std::numeric_limits<double>::min(),
+          .high = rung + 1 < rungs ? std::nextafter(rung_resolution(rung + 1, rungs), 0.0) : 1};
+}
+
+void CurveFill::add(const Workload& workload, std::size_t item, double x, double limit) {
   const double knee = workload.curve_knee[item];
-  curves_.push_back({static_cast<std::uint32_t>(item), x, x < knee ? std::min(knee, 1.0) : 1, x});
+  curves_.push_back({static_cast<std::uint32_t>(item), x, std::min(limit, x < knee ? std::min(knee, 1.0) : 1), x});
 }
 
 double CurveFill::spent_at(const Workload& workload, double m) {

@@ -17,6 +17,9 @@ constexpr std::size_t kVeryFewItems = 32;
 constexpr std::size_t kFewItems = 512;  // below this a good end is worth more than the time; above, it is near anyway
 constexpr double kEnough = 3e-6;  // shortfall, as a share of what the budget is worth, at which using the rest ends
 
+// In a bracket as narrow as this all steps are worth the same a second, to a millionth: their order does not matter.
+constexpr double kTied = 1 + 1e-6;
+
 // A bracket wider than this is too coarse to work out the bound from the sums at its end.
 constexpr double kWideBracket = 4;
 
@@ -51,18 +54,25 @@ void FlatSearch::enclose_and_split(const LevelColumns& columns, double budget_s,
   found_ = bracket_.find(columns_, budget_s_, level, open_);
   plan_ = {.feasible = found_.feasible, .operations = found_.looked_at};
   if (!plan_.feasible) return;
-  split_.build(columns_, open_, found_.bracket);
   choice_.resize(open_.size());
   for (std::size_t o = 0; o < open_.size(); ++o) choice_[o] = open_[o].high;
-  plan_.multiplier = split_.take(budget_s_ - found_.pass.high.cost_s, found_.bracket.low, choice_);
-  plan_.operations += static_cast<std::int64_t>(split_.size());
-  bracket_.learn(plan_.multiplier, open_.size(), columns_.size());
+  const double room_s = budget_s_ - found_.pass.high.cost_s;
+  if (const auto [low, high] = found_.bracket; low > 0 && high <= kTied * low) {
+    take_in_order(room_s);
+    bracket_.learn(std::sqrt(low) * std::sqrt(high), open_.size(), columns_.size());
+  } else {
+    split_.build(columns_, open_, found_.bracket);
+    plan_.multiplier = split_.take(room_s, low, choice_);
+    plan_.operations += static_cast<std::int64_t>(split_.size());
+    bracket_.learn(plan_.multiplier, open_.size(), columns_.size());
+  }
   prove();
   CompensatedSum cost_s, benefit;
   cost_s.add(found_.pass.high.cost_s);
   benefit.add(found_.pass.high.benefit);
   for (std::size_t o = 0; o < open_.size(); ++o) {
     const OpenItem& open = open_[o];
+    if (choice_[o] == open.high) continue;
     cost_s.add(-columns_.cost(open.item, open.high));
     cost_s.add(columns_.cost(open.item, choice_[o]));
     benefit.add(-columns_.worth(open.item, open.high));
@@ -70,6 +80,20 @@ void FlatSearch::enclose_and_split(const LevelColumns& columns, double budget_s,
   }
   plan_.cost_s = cost_s.value();
   plan_.benefit = benefit.value();
+}
+
+// Ties: from first to last, each item that fits goes to what it would choose at the low end.
+void FlatSearch::take_in_order(double room_s) {
+  plan_.multiplier = found_.bracket.high;
+  const double enough_s = kEnough * budget_s_;
+  for (std::size_t o = 0; o < open_.size() && room_s > enough_s; ++o) {
+    const OpenItem& open = open_[o];
+    const double extra_s = columns_.cost(open.item, open.low) - columns_.cost(open.item, open.high);
+    if (extra_s > room_s) continue;
+    room_s -= extra_s;
+    choice_[o] = open.low;
+  }
+  plan_.operations += static_cast<std::int64_t>(open_.size());
 }
 
 // The dual at the multiplier m: settled items follow from their sums at the bracket's high end h, where each is worth
@@ -83,7 +107,7 @@ void FlatSearch::prove() {
     CompensatedSum at_m;
     at_m.add(pass.high.worth);
     at_m.add((h - m) * pass.high.cost_s);
-    for (const OpenItem& open : open_) {
+    for (const OpenItem& open : m < h ? std::span<const OpenItem>(open_) : std::span<const OpenItem>()) {
       at_m.add(-(columns_.worth(open.item, open.high) - m * columns_.cost(open.item, open.high)));
       double best = 0;
       for (int l = 0; l < columns_.levels(open.item); ++l) {

@@ -4,8 +4,8 @@
 // which is above every selection within the budget (Everett 1963; Sinha and Zoltners 1979):
 //   enclose  a bracket around the last frame's m, or one found on a sample of the items, and one pass over all items, which settles
 //            all but a few (bracket.h, level_pass.h);
-//   split    those few's hull steps, steepest first until the money is spent: the dual's minimum (split.h). Tied sets are
-//            split by item;
+//   split    those few's hull steps, steepest first until the money is spent: the dual's minimum (split.h). Tied sets, which no
+//            multiplier divides, are split by item;
 //   finish   near-ties are decided together so that what is left over is used (core.h).
 // O(n) for the pass, expected O(open items) for the rest.
 #pragma once
@@ -51,6 +51,7 @@ class FlatSearch {
   };
 
   void enclose_and_split(const LevelColumns& columns, double budget_s, std::span<std::int16_t> level);
+  void take_in_order(double room_s);
   void prove();
   void choose_ties();
   void finish();

@@ -2,9 +2,9 @@
 //
 // The dual of flat_search.h with other terms: a node is worth the larger of its own best and the sum of its children, and
 // a curve the maximum of benefit(x) - m * cost(x), which has a closed form on either side of its knee. One backward sweep
-// in preorder evaluates it. The multiplier is bracketed from the last frame's and bisected; jumps that rounding it left
-// open, and near-ties, are decided together (core.h), and what is left raises curves at equal slope. O(items) a sweep,
-// some 50 sweeps a frame.
+// in preorder evaluates it. The multiplier is bracketed from the last frame's and narrowed by false position; jumps that this
+// leaves open, and near-ties, are decided together (core.h), and what is left raises curves at equal slope. O(items) a
+// sweep; five or so sweeps a frame where curves slide, some 50 where all is jumps.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,13 @@
 
 namespace framesim::certified {
 
+// More curves than these take up what is left by sliding; with fewer, a jump elsewhere may have to be paid for.
+inline constexpr std::ptrdiff_t kFewCurves = 32;
+
 struct TreeRules {
   bool may_omit = false;
-  // An item's kept level counts with 1 + bonus of its benefit; kNoLevel = nothing kept. Empty: nothing is kept.
+  // An item's kept level, or a curve's kept rung of the stand-in ladder, counts with 1 + bonus of its benefit; kNoLevel =
+  // nothing kept. Empty: nothing is kept.
   std::span<const std::uint8_t> kept{};
   double bonus = 0;
 };
@@ -34,9 +38,11 @@ struct TreePlan {
 class TreeSearch {
  public:
   explicit TreeSearch(std::size_t most_states) : most_states_(most_states) {}
-  void forget() { multiplier_ = drift_ = 0; }
+  void forget() { multiplier_ = 0, elasticity_ = 1; }
   // Fills levels and resolutions of `selection` (which arrives reset). budget_s >= 0, may be infinite.
   TreePlan solve(const Workload& workload, double budget_s, const TreeRules& rules, Selection& selection);
+  // The bound only; cheaper by the last steps.
+  TreePlan bound(const Workload& workload, double budget_s, const TreeRules& rules);
 
  private:
   // What a subtree does at a multiplier.
@@ -58,8 +64,14 @@ class TreeSearch {
 
   std::size_t end(std::size_t item) const;
   double own_value(std::size_t item, int level) const;
+  int kept_rung(std::size_t item) const;
+  double curve_value(std::size_t item, double x) const;
+  double ceiling(std::size_t item, double x) const;
+  Node evaluate_curve(std::size_t item) const;
   Node evaluate_item(std::size_t item, const Nodes& nodes) const;
   double evaluate(double multiplier, Nodes& nodes);
+  void search();
+  double first_step(double cost_s) const;
   bool enclose();
   void narrow();
   void prove();
@@ -75,12 +87,13 @@ class TreeSearch {
 
   const std::size_t most_states_;
   double multiplier_ = 0;  // of the last frame; 0 = none
-  double drift_ = 0;       // how far it moves from frame to frame, as a logarithm
+  double elasticity_ = 1;  // by how many e-folds the cost falls for one of the multiplier, in the last frame
 
   // Of the frame at hand.
   const Workload* workload_ = nullptr;
   TreeRules rules_;
   double budget_s_ = 0;
+  double spent_ = 0;           // share of the budget that may be left when the multiplier is good enough
   double m_ = 0;               // the multiplier being evaluated
   double low_ = 0, high_ = 0;  // cost at low > budget >= cost at high
   double low_cost_s_ = 0, high_cost_s_ = 0;

@@ -6,6 +6,10 @@
 namespace framesim {
 namespace {
 
+// Set-up of less than this share of the rest is rounding of an estimator's fit. A jump for it would be ranked by the
+// quotient of two differences of nearly equal numbers, and taken from x = 0 at any price.
+constexpr double kNoSetup = 1e-9;
+
 struct Jump {
   double from, to;
 };
@@ -44,7 +48,7 @@ void settle(CurveVariable& v) {
   v.cap = 1;
   v.jump_to = 0;
   v.slope_s = v.rest_s;
-  if (v.setup_s <= 0) return;
+  if (v.setup_s <= kNoSetup * v.rest_s) return;
   const bool below = v.x <= 0 || v.x < v.knee;
   if (!below) return;
   if (v.knee > 0) v.slope_s += v.setup_s / v.knee;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "scenes/scene_file.h"
+#include "scenes/table_reader.h"
 #include "sim/words.h"
 
 namespace framesim {
@@ -112,7 +113,9 @@ Sphere around(const ImportedScene& scene) {
 std::string assumed_path(const ImportedScene& scene) {
   const Sphere s = around(scene);
   const auto point = [&](double along) {
-    return fmt::format("[{}, {}, {}]", s.centre.x, s.centre.y + s.radius_m / 8, s.centre.z + along * s.radius_m);
+    const glm::dvec3 eye = s.centre + s.radius_m * glm::dvec3(0, 0.125, along);
+    check_coordinates(scene, "the assumed path of the camera leads to", eye);
+    return fmt::format("[{}, {}, {}]", eye.x, eye.y, eye.z);
   };
   return fmt::format(
       "leg = [{{ kind = \"polyline\", points = [{}, {}], frames = 240 }},\n"
@@ -132,9 +135,12 @@ std::string camera_csv(const std::vector<Pose>& poses) {
 }  // namespace
 
 SceneFiles write_scene(const ImportedScene& scene, const std::string& stem) {
+  check_scene_limits(scene);
   SceneFiles files;
   files.instances_name = stem + "-instances.csv";
   const Sphere s = around(scene);
+  if (!(s.radius_m <= kLargestLength))
+    throw InputError({scene.title}, fmt::format("a scene of {} m; allowed: up to {} m", s.radius_m, kLargestLength));
   std::string& toml = files.scene;
   toml = fmt::format(
       "framesim = 1\nname = \"{}\"\ntitle = {}\nsource = {}\nassumptions = {}\ntargets = [\"16ms\", \"33ms\"]\n",

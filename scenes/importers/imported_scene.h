@@ -60,7 +60,12 @@ struct SceneFiles {
   std::string scene, instances, camera;  // camera: empty if the path is a leg of the scene file
   std::string instances_name, camera_name;
 };
+// Throws InputError naming the title for what a scene file cannot say, such as an instance 1e10 m away: what is written
+// can be read.
 SceneFiles write_scene(const ImportedScene& scene, const std::string& stem);
+// ... and its checks, of all but the path that is assumed; and of one point, with `what` before it in the message.
+void check_scene_limits(const ImportedScene& scene);
+void check_coordinates(const ImportedScene& scene, const char* what, const glm::dvec3& at);
 // A few lines for people.
 std::string describe(const ImportedScene& scene);
 

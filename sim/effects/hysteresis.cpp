@@ -8,7 +8,7 @@
 //          Nothing is locked: the policy weighs the change against its gain. But where two levels differ by a percent in
 //          accuracy, so small a weight holds them already, and a coarser level may be worth more than a finer one.
 //          The benefit that a run reports includes the factor: it is the benefit of this picture after the last one. So does
-//          the benefit of the finest levels beside it, which a picture of steady coarse levels may then exceed.
+//          the most that the frame could have, beside it: of each item the level that is worth most after the last picture.
 // Source:  Funkhouser and Sequin 1993, section 5, hysteresis (levels; a change of algorithm is a change of level here).
 // Inert:   weight=0, or no item of the scene has two levels.
 #include <algorithm>

@@ -21,12 +21,13 @@ namespace framesim {
 
 namespace {
 
-// The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]; s = 0 never
-// divides: then t_l < target makes the first form apply.
+// The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]. Of the forms for the
+// longer and the shorter drawing the right one is always the smaller: taken so, the result is within an eps of the exact one,
+// where a comparison with t_l that rounding turns would cost 1/s eps.
 double closed_form_inverse(double logic_s, double target_s, double share) {
   if (logic_s >= target_s) return 0;
   const double draw_longer = target_s - share * logic_s;
-  return draw_longer >= logic_s ? draw_longer : (target_s - logic_s) / share;
+  return share > 0 ? std::min(draw_longer, (target_s - logic_s) / share) : draw_longer;
 }
 
 double drawing_time(const PlanInput& input) {

@@ -226,6 +226,17 @@ TEST_CASE("mixed-gradient: set-up is paid for one curve rather than for two halv
   CHECK(s.resolution[0] == Approx(2.0 / 3).epsilon(1e-6));
 }
 
+// b_i sqrt(x_i) with b = 10 and 1 and the same cost: the optima are as b^2, so of a budget of 0.5 the second gets 0.5/101 =
+// 0.00495. Set-up of 1e-17 is an estimator's rounding: no reason to jump to the knee at 0.1 for it.
+TEST_CASE("mixed-gradient: set-up of the size of rounding is none") {
+  TestWorkload w;
+  w.add_curve(1, 10, {}, 1e-17, 0.1);
+  w.add_curve(1, 1, {}, 1e-17, 0.1);
+  w.finish();
+  const Selection s = w.select(*make_policy("mixed-gradient:direction=multiplier", w), 0.5);
+  CHECK(s.resolution[1] == Approx(0.5 / 101).epsilon(0.01));
+}
+
 // Below the knee a curve costs (0.6 + 0.4/0.1) x = 4.6 x. Budget 0.2 for two of them: x = 0.0217 each is best (0.2949). A
 // jump from 0.1 * 0.6/4.6 = 0.0130 to 0.767 would be better value but costs 0.8: one stays where it would start, the other
 // takes the rest, 0.0304: 0.2887. Charged in full, set-up would have left nothing to draw.

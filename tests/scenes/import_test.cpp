@@ -140,6 +140,40 @@ TEST_CASE("an animated camera of a glTF file becomes one pose for each thirtieth
   CHECK(s.poses[3].forward == glm::dvec3(0, 0, -1));
 }
 
+TEST_CASE("an imported scene that no scene file can say is refused before it is written") {
+  // Found by fuzzing: a camera that an animation leads beyond 1e9 m was written, and then refused when it was read.
+  MemoryFiles files;
+  files.files["b.bin"] = floats({0, 0.1f, 0, 0, 0, 0, 0, 0, 0, 3, 3, -5e11f});
+  const ImportedScene far_camera = read_gltf(
+      R"("nodes":[{"mesh":0},{"camera":0}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],
+    "animations":[{"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}],"samplers":[{"input":4,"output":5}]}])",
+      files);
+  const auto refused = [](const ImportedScene& scene, const std::string& message) {
+    try {
+      write_scene(scene, "s");
+      FAIL("written");
+    } catch (const InputError& error) {
+      INFO(error.what());
+      CHECK(std::string(error.what()).find(message) != std::string::npos);
+    }
+  };
+  refused(far_camera, "m.gltf: the camera at 0.99");
+  ImportedScene scene;
+  scene.title = "t";
+  scene.instances.push_back({scene.type("a", 1, 1, {{.polygons = 1}}), {0, 0, 0}, 1});
+  CHECK_FALSE(write_scene(scene, "s").scene.empty());
+  scene.instances[0].centre.z = 999'999'999;
+  refused(scene, "t: the assumed path of the camera leads to 0, 0.21650635094610965, 1000000002.46");
+  scene.instances[0].centre.z = 0;
+  scene.types[0].radius_m = 1e9;  // a cube around it has a half diagonal of sqrt(3) times that
+  refused(scene, "t: a scene of 1732050807.568877");
+  scene.types[0].radius_m = 0;
+  refused(scene, "t: 'a': a radius of 0; allowed: above 0 and up to 1e+09");
+  scene.types[0].radius_m = 1;
+  scene.types[0].levels[0].vertices = 2e12;
+  refused(scene, "t: 'a': a level of 2000000000000; allowed: from 0 to 1e+12");
+}
+
 TEST_CASE("a chain of 3D Tiles with equally many i3dm instances becomes those instances with the tiles as levels") {
   MemoryFiles files;
   files.files["far.i3dm"] = i3dm({0, 0, 0, 10, 0, 0}, 2);

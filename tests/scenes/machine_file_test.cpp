@@ -93,7 +93,7 @@ TEST_CASE("a machine file is refused at file, line and column", "[machine_file]"
 }
 
 TEST_CASE("every built-in machine loads under its own name", "[machine_file]") {
-  REQUIRE(built_in_machines().size() == 9);
+  REQUIRE(built_in_machines().size() == 9 + 5);  // as assumed, and fitted to published tables
   for (const BuiltIn& entry : built_in_machines()) {
     CAPTURE(entry.name);
     const MachineProfile m = load_machine({.name = std::string(entry.name), .settings = {}, .where = {"here"}});

@@ -85,7 +85,7 @@ TEST_CASE("a curve switches where a ladder of stand-ins would") {
 }
 
 // Root 0 over leaves 1 and 2, and a leaf 3 by itself. Drawn is the root: at its finest, but one level above leaves, so
-// that it is 1 - 1/(1 + 1) = 1/2 on the way. Leaves alone count as what could be finest: 3 * 4.
+// that it is 1 - 1/(1 + 1) = 1/2 on the way. The most that could be had is all leaves at their finest: 3 * 4.
 TEST_CASE("in a tree a drawn node stands for its subtree, coarser than leaves") {
   Picture picture({0, 1, 2, 3});
   picture.workload.subtree_end = {3, 2, 3, 4};
@@ -96,4 +96,36 @@ TEST_CASE("in a tree a drawn node stands for its subtree, coarser than leaves") 
   CHECK(r.mix_middle == 1);
   CHECK(r.mix_none == 1);
   CHECK(r.finest_benefit == 12);
+}
+
+// Of the items' levels 1, 2, 3, 4: in item 1 the second is made worth 9, as pricing a change of level does. 4 + 9.
+TEST_CASE("a coarser level that is worth more than the finest counts in the most that a frame could have") {
+  Picture picture({0, 1});
+  picture.workload.benefit[5] = 9;
+  PictureRecorder recorder;
+  CHECK(picture.draw(0, 3).draw(1, 1).record(recorder).finest_benefit == 13);
+}
+
+// Root 0 over node 1 (over leaf 2) and leaf 3; leaf 4 by itself. Leaves at their finest are worth 4 each. Node 1 at 7 is worth
+// more than its leaf: 7 + 4 + 4. The root at 12 is worth more than 7 + 4: 12 + 4. At 11 it is not: 7 + 4 + 4 again.
+TEST_CASE("a node that is worth more than its subtree counts in the most that a frame could have") {
+  Picture picture({0, 1, 2, 3, 4});
+  picture.workload.subtree_end = {4, 3, 3, 4, 5};
+  PictureRecorder recorder;
+  picture.workload.benefit[7] = 7;
+  CHECK(picture.draw(2, 3).record(recorder).finest_benefit == 15);
+  picture.workload.benefit[0] = 12;  // its coarsest level
+  CHECK(picture.record(recorder).finest_benefit == 16);
+  picture.workload.benefit[0] = 11;
+  CHECK(picture.record(recorder).finest_benefit == 15);
+}
+
+// A bundle over two leaves has no level of its own.
+TEST_CASE("a bundle is worth its leaves in the most that a frame could have") {
+  Picture picture({0, 1, 2});
+  picture.workload.subtree_end = {3, 2, 3};
+  picture.workload.kind[0] = ItemKind::bundle;
+  picture.workload.level_begin = {0, 0, 4, 8};
+  PictureRecorder recorder;
+  CHECK(picture.draw(1, 3).record(recorder).finest_benefit == 8);
 }
