@@ -143,12 +143,12 @@ double swing(double rate, double ki, double kd) {
   return kd == 1 ? 1.5 : kStep * kStep;
 }
 
-// Reported for each of 120 sets of gains, without dead band or median: the period (0: none of up to 100 frames) and
+// Reported for each of 80 sets of gains, without dead band or median: the period (0: none of up to 100 frames) and
 // amplitude in which it ends; `framesim_tests "control: pid*" -s` prints them. Times never leave those of the bounds,
 // and nobody stays at one.
 TEST_CASE("control: pid at every gain of a grid is bounded, its limit cycles reported") {
   int settled = 0, alternating = 0;
-  for (const double rate : {0.0, 0.0625, 0.125, 0.5, 1.0, 100.0}) {
+  for (const double rate : {0.0, 0.125, 1.0, 100.0}) {
     for (const double ki : {0.0, 0.002, 0.1, 1.0, 10.0}) {
       for (const double kd : {0.0, 0.1, 1.0, 10.0}) {
         const std::vector<double> times =
@@ -165,8 +165,8 @@ TEST_CASE("control: pid at every gain of a grid is bounded, its limit cycles rep
       }
     }
   }
-  CHECK(settled == 19);
-  CHECK(alternating == 24);  // kd = 10 with ki < 10
+  CHECK(settled == 10);
+  CHECK(alternating == 16);  // kd = 10 with ki < 10
 }
 
 // Hard: ten frames of 10, 30 or 10^6 times the target that drawing did not cause (a hitch): the threshold runs to its

@@ -77,7 +77,11 @@ TEST_CASE("hard scenes: every file under every policy gives finite numbers, and 
         }
         CHECK(wrong == "");
         CHECK(fault(result.summary) == "");
-        if (target_s == scene.targets_s.front()) CHECK(run(spec, scene).records_hash == result.records_hash);
+        if (target_s != scene.targets_s.front()) continue;
+        CHECK(run(spec, scene).records_hash == result.records_hash);
+#if defined(FRAMESIM_SANITIZED)
+        break;  // of the targets: the kinds of access are the same at all
+#endif
       }
     }
   }

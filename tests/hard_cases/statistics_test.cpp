@@ -37,11 +37,11 @@ std::vector<FrameRecord> frames_of(const std::vector<std::int64_t>& times_ps) {
 
 }  // namespace
 
-// Hard: the deviation is 3e-6 of the mean. E[x^2] - mean^2 takes two numbers of 2.8e-4 apart, which differ by 2.5e-15:
-// after 10^7 roundings nothing of it is left. Whole picoseconds give the exact sums: s^2 = (n sum d^2 - (sum d)^2) / (n
-// (n - 1)). Welford's mean is rounded each time, to 1.7e-18 s; 10^7 such steps at random are 5e-15 s, 1e-7 of the
-// deviation, and as they are not correlated with the data the deviation keeps 1e-9. The compensated mean is exact but
-// for its own rounding.
+// Hard: the deviation is 3e-6 of the mean. E[x^2] - mean^2 takes two numbers of 2.8e-4 apart, which differ by 2.5e-15, 50
+// thousand units in their last place, while each sum has rounded 10^7 times: three figures of it are left, if any. Whole
+// picoseconds give the exact sums: s^2 = (n sum d^2 - (sum d)^2) / (n (n - 1)). Welford's mean is rounded each time, to
+// 1.7e-18 s; 10^7 such steps at random are 5e-15 s, 1e-7 of the deviation, and as they are not correlated with the data the
+// deviation keeps 1e-9. The compensated mean is exact but for its own rounding.
 TEST_CASE("statistics: ten million frame times of 16.67 ms with 50 ns deviation") {
   Moments moments;
   CompensatedSum sum;
@@ -67,7 +67,7 @@ TEST_CASE("statistics: ten million frame times of 16.67 ms with 50 ns deviation"
   CHECK(std::fabs(static_cast<double>(sum.value() / static_cast<double>(n) / mean - 1)) <= 2.3e-16);
   const double count = static_cast<double>(n),
                by_squares = naive_squares / count - naive_sum / count * (naive_sum / count);
-  CHECK_FALSE(std::fabs(std::sqrt(by_squares) / 50e-9 - 1) < 1e-3);  // not a number, or far off
+  CHECK_FALSE(std::fabs(std::sqrt(by_squares) / static_cast<double>(deviation) - 1) < 1e-5);  // or not a number
 }
 
 // By hand: 16 and 20 ms against 17 ms. Mean 18, deviation sqrt((4 + 4) / 1) = 2.828 ms, AvgErr (1 + 3) / 2 / 17, 95th
