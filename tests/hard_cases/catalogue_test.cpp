@@ -27,7 +27,8 @@ struct Row {
   std::string group, name, hard, tests, scenes;
 };
 
-// The cells of a line "| a | b | ... |", without blanks around them; none for another line or for the rule below a heading.
+// The cells of a line "| a | b | ... |", without blanks around them; none for another line or for the rule below a
+// heading.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   if (line.rfind("| ", 0) != 0) return cells;

@@ -38,9 +38,10 @@ double resolution_at(const std::string& policy, const TestWorkload& w, double bu
 
 }  // namespace
 
-// Hard: the barrier eps / (1 - x) is infinite at x = 1 and db/dx of b sqrt(x) at x = 0: inf - inf would be a direction that is no
-// number. By hand: at x = 1 there is nothing to raise, slope 0 and no step; one ulp below it the barrier (2^53 eps) outweighs
-// b/2, the variable counts as saturated; at 0 it goes, and ends where the money does: 0.25 s buy x = 1/4 of 1 s.
+// Hard: the barrier eps / (1 - x) is infinite at x = 1 and db/dx of b sqrt(x) at x = 0: inf - inf would be a direction
+// that is no number. By hand: at x = 1 there is nothing to raise, slope 0 and no step; one ulp below it the barrier
+// (2^53 eps) outweighs b/2, the variable counts as saturated; at 0 it goes, and ends where the money does: 0.25 s buy x
+// = 1/4 of 1 s.
 TEST_CASE("continuous: x at 0, at 1 and one ulp below") {
   for (const double barrier : {0.0, 1e-3, 0.5}) {
     for (const Direction direction : kDirections) {
@@ -69,8 +70,9 @@ TEST_CASE("continuous: x at 0, at 1 and one ulp below") {
   }
 }
 
-// Hard: nothing gains anything: gradient 0, its length 0, and the normalised direction 0/0. Nothing or anything may be drawn, but
-// within the budget and of benefit 0. Beside one curve that is worth something, that one must get all it can use.
+// Hard: nothing gains anything: gradient 0, its length 0, and the normalised direction 0/0. Nothing or anything may be
+// drawn, but within the budget and of benefit 0. Beside one curve that is worth something, that one must get all it can
+// use.
 TEST_CASE("continuous: flat benefit") {
   TestWorkload flat;
   for (int i = 0; i < 4; ++i) flat.add_curve(1 + i, 0);
@@ -90,9 +92,10 @@ TEST_CASE("continuous: flat benefit") {
   }
 }
 
-// Hard: with b x the slope is the same everywhere, so that no x is stationary and the best multiplier is where all or nothing is
-// taken. By hand: slopes 4, 2 and 1 a second of cost 1 s each, budget 1.5 s: the first whole, half of the second: 4 + 1 = 5. (The
-// closed forms of lagrange and active-set, robin-hood's shares and the printed gradient are not exact here: sound only.)
+// Hard: with b x the slope is the same everywhere, so that no x is stationary and the best multiplier is where all or
+// nothing is taken. By hand: slopes 4, 2 and 1 a second of cost 1 s each, budget 1.5 s: the first whole, half of the
+// second: 4 + 1 = 5. (The closed forms of lagrange and active-set, robin-hood's shares and the printed gradient are not
+// exact here: sound only.)
 TEST_CASE("continuous: linear benefit") {
   TestWorkload w;
   for (const double benefit : {4.0, 2.0, 1.0}) w.add_curve(1, benefit, {}, 0, 0, CurveShape::linear);
@@ -104,8 +107,8 @@ TEST_CASE("continuous: linear benefit") {
   }
 }
 
-// Hard: every variable is stopped (by its cap, or by the barrier at x near 1): the direction is the zero vector, slope 0/0. aim()
-// must say 0, a step must not move, and asking again must not wake anything.
+// Hard: every variable is stopped (by its cap, or by the barrier at x near 1): the direction is the zero vector, slope
+// 0/0. aim() must say 0, a step must not move, and asking again must not wake anything.
 TEST_CASE("continuous: a search direction of zero") {
   CurveAscent none;
   for (const Direction direction : kDirections) {
@@ -124,8 +127,9 @@ TEST_CASE("continuous: a search direction of zero") {
   CHECK(ascent[0].x == 0.9999);
 }
 
-// Hard: t_max, how far the money allows to go, is 0 (or so small that x + t a is x): a step of no length must end the search, not
-// repeat for ever. By hand: no money moves nothing; 1e-300 s for a curve of 1 s moves nothing or costs no more than that.
+// Hard: t_max, how far the money allows to go, is 0 (or so small that x + t a is x): a step of no length must end the
+// search, not repeat for ever. By hand: no money moves nothing; 1e-300 s for a curve of 1 s moves nothing or costs no
+// more than that.
 TEST_CASE("continuous: a longest step of 0") {
   for (const Direction direction : kDirections) {
     for (const double money_s : {0.0, -1.0, 1e-300, std::numeric_limits<double>::denorm_min()}) {
@@ -148,9 +152,9 @@ TEST_CASE("continuous: a longest step of 0") {
   every_policy_copes(w, {0, 1e-300, 1e-18, 1e-9});
 }
 
-// Hard: 10^5 alike curves reach x = 1 at the same multiplier and the same t, so a method that fixes one saturated variable a round
-// needs 10^5 rounds of 10^5. By hand: budget for all and a little more, every x is 1, the cost exactly the sum; with a ten
-// thousandth less, all share alike.
+// Hard: 10^5 alike curves reach x = 1 at the same multiplier and the same t, so a method that fixes one saturated
+// variable a round needs 10^5 rounds of 10^5. By hand: budget for all and a little more, every x is 1, the cost exactly
+// the sum; with a ten thousandth less, all share alike.
 TEST_CASE("continuous: a hundred thousand variables saturate at once") {
   TestWorkload w;
   const double cost_s = 1.0 / 1024;

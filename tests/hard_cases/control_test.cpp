@@ -1,10 +1,11 @@
-// Catalogue, control: `feedback` and `pid` on a machine of known gain, with every gain, and with frames that drawing does not
-// explain.
+// Catalogue, control: `feedback` and `pid` on a machine of known gain, with every gain, and with frames that drawing
+// does not explain.
 //
-// The machine: 151 items of 1, 1.05, 1.05^2 ... 1.05^150 px whose finer level has one polygon, so that a size threshold shows
-// in which of them are finer; a frame takes 1.05^123 / (smallest finer size) of the target: in inverse proportion to the
-// threshold, in steps of 5 %, and 1.05^123 = 404 px is right exactly. The threshold starts at 1.05^99.5 = 128 px, where a frame
-// takes 1.05^23 = 3.07 times the target, and is held in 1 .. 1500 px: 404 times down to 1.05^-27 = 0.268 of the target.
+// The machine: 151 items of 1, 1.05, 1.05^2 ... 1.05^150 px whose finer level has one polygon, so that a size threshold
+// shows in which of them are finer; a frame takes 1.05^123 / (smallest finer size) of the target: in inverse proportion
+// to the threshold, in steps of 5 %, and 1.05^123 = 404 px is right exactly. The threshold starts at 1.05^99.5 = 128
+// px, where a frame takes 1.05^23 = 3.07 times the target, and is held in 1 .. 1500 px: 404 times down to 1.05^-27 =
+// 0.268 of the target.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -97,11 +98,12 @@ bool on_target(const std::vector<double>& times, double factor) {
 
 }  // namespace
 
-// By hand: with x the logarithm of threshold over the right one, a frame takes e^-x of the target and x' = x - g x. So the error
-// shrinks by |1 - g|: gain 0 stays where it is (23 steps), gains up to 2 settle, at 2 it changes sign for ever, 23 steps each way,
-// and beyond it grows until both ends are bounds: the threshold of 1500 px is 27 steps too high, and 27 g steps lower the next, or
-// 1 px, 123 too low. In whole steps a cycle between n too low and n too high can hold itself below gain 2 as well, where n (2 - g)
-// is less than a step: n = 1 at 1.5, up to 9 at 1.9, of which it ends in 4.
+// By hand: with x the logarithm of threshold over the right one, a frame takes e^-x of the target and x' = x - g x. So
+// the error shrinks by |1 - g|: gain 0 stays where it is (23 steps), gains up to 2 settle, at 2 it changes sign for
+// ever, 23 steps each way, and beyond it grows until both ends are bounds: the threshold of 1500 px is 27 steps too
+// high, and 27 g steps lower the next, or 1 px, 123 too low. In whole steps a cycle between n too low and n too high
+// can hold itself below gain 2 as well, where n (2 - g) is less than a step: n = 1 at 1.5, up to 9 at 1.9, of which it
+// ends in 4.
 TEST_CASE("control: feedback at every gain, its limit cycles by hand") {
   struct Row {
     const char* gain;
@@ -130,26 +132,27 @@ TEST_CASE("control: feedback at every gain, its limit cycles by hand") {
   }
 }
 
-// How far from the target `pid` may still be in the end, as a factor. By hand: the machine has a gain of 1, so for small errors x'
-// = x - kp x - kd (x - x before) - ki (sum of x), kp = 1 - exp(-rate) <= 1. The double integrator of ki is damped by kp alone: with
-// either the error is a step or two of the machine, and ki = 10 is unstable (above 4), as is kd = 1 (its root leaves the circle);
-// there the steps of 1 + out and 1 / (1 - out) bound the swing. kd = 10 throws the threshold from one bound to the other.
+// How far above the target `pid` may still be in the end, as a factor: what was seen, rounded up. Why it grows: for
+// small errors the loop is x' = x - kp x - kd (x - x before) - ki (sum of x), kp = 1 - exp(-rate). Two integrators are
+// damped by kp alone, so that with rate 0 it swings by all of its start; with ki = 10 it is unstable (above 4), and
+// with kd = 1 its root is on the unit circle. kd = 10 throws the threshold from one bound to the other.
 double swing(double rate, double ki, double kd) {
-  if (kd == 10) return ki == 10 ? 7.1 : steps(123);
+  if (kd == 10) return steps(123);
   if (ki == 10) return steps(29);
   if (rate == 0) return steps(23);
   return kd == 1 ? 1.5 : kStep * kStep;
 }
 
-// Reported for each of 120 sets of gains, without dead band or median: the period (0: none of up to 100 frames) and amplitude in
-// which it ends. Times never leave those of the bounds, and nobody stays at one.
+// Reported for each of 80 sets of gains, without dead band or median: the period (0: none of up to 100 frames) and
+// amplitude in which it ends; `framesim_tests "control: pid*" -s` prints them. Times never leave those of the bounds,
+// and nobody stays at one.
 TEST_CASE("control: pid at every gain of a grid is bounded, its limit cycles reported") {
   int settled = 0, alternating = 0;
-  for (const double rate : {0.0, 0.0625, 0.125, 0.5, 1.0, 100.0}) {
+  for (const double rate : {0.0, 0.125, 1.0, 100.0}) {
     for (const double ki : {0.0, 0.002, 0.1, 1.0, 10.0}) {
       for (const double kd : {0.0, 0.1, 1.0, 10.0}) {
         const std::vector<double> times =
-            run(pid(fmt::format("rate={},ki={},kd={},{}", rate, ki, kd, kQuick)), 900, calm);
+            run(pid(fmt::format("rate={},ki={},kd={},{}", rate, ki, kd, kQuick)), 1200, calm);
         const auto [shortest, longest] = std::minmax_element(times.begin(), times.end());
         const LimitCycle cycle = limit_cycle(times, 300);
         UNSCOPED_INFO(fmt::format("rate={} ki={} kd={}: period {}, {:.3f} to {:.3f} of the target", rate, ki, kd,
@@ -162,14 +165,15 @@ TEST_CASE("control: pid at every gain of a grid is bounded, its limit cycles rep
       }
     }
   }
-  CHECK(settled == 19);
-  CHECK(alternating == 24);  // kd = 10 with ki < 10
+  CHECK(settled == 10);
+  CHECK(alternating == 16);  // kd = 10 with ki < 10
 }
 
-// Hard: ten frames of 10, 30 or 10^6 times the target that drawing did not cause (a hitch): the threshold runs to its bound, and
-// what was integrated on the way must not hold it there. By hand for the defaults: e = -29 four times is the integral's limit,
-// -100, and ki I = -0.2 outweighs kp e <= 0.1175 for ever, unless it is unwound: e <= 0.73 takes 100 / 0.73 = 137 frames for all of
-// it, and what is left of it over what kp e can do the rest. All are back within 400 frames, most within 100.
+// Hard: ten frames of 10, 30 or 10^6 times the target that drawing did not cause (a hitch): the threshold runs to its
+// bound, and what was integrated on the way must not hold it there. By hand for the defaults: e = -29 four times is the
+// integral's limit, -100, and ki I = -0.2 outweighs kp e <= 0.1175 for ever, unless it is unwound: e <= 0.73 takes 100
+// / 0.73 = 137 frames for all of it, and what is left of it over what kp e can do the rest. All are back within 400
+// frames, most within 100.
 TEST_CASE("control: recovery after ten missed frames") {
   for (const double hitch : {10.0, 30.0, 1e6}) {
     CAPTURE(hitch);
@@ -188,8 +192,8 @@ TEST_CASE("control: recovery after ten missed frames") {
   for (std::size_t k = 111; k < 120; ++k) CHECK(times[k] == Approx(1).epsilon(0.051));
 }
 
-// Hard: from one frame to the next everything is 10 times as dear, or as cheap: 47 steps of 5 %. By hand: feedback of gain 1 has
-// one wrong frame, and is right in the next, to a step; with gain g the 47 steps shrink by 1 - g a frame.
+// Hard: from one frame to the next everything is 10 times as dear, or as cheap: 47 steps of 5 %. By hand: feedback of
+// gain 1 has one wrong frame, and is right in the next, to a step; with gain g the 47 steps shrink by 1 - g a frame.
 TEST_CASE("control: recovery after a camera cut") {
   for (const int cut : {47, -47}) {
     CAPTURE(cut);
@@ -205,8 +209,9 @@ TEST_CASE("control: recovery after a camera cut") {
   }
 }
 
-// Hard: time / target is 0, or beyond all doubles' squares, and a logarithm or a power of it infinite. A frame that took no time asks
-// for the finest that there is, one of a day for the coarsest; afterwards both must still be controllers.
+// Hard: time / target is 0, or beyond all doubles' squares, and a logarithm or a power of it infinite. A frame that
+// took no time asks for the finest that there is, one of a day for the coarsest; afterwards both must still be
+// controllers.
 TEST_CASE("control: frames of no time and of a day") {
   for (const double odd : {0.0, 1e-300, 86'400 / 1e-12}) {
     CAPTURE(odd);
@@ -223,8 +228,9 @@ TEST_CASE("control: frames of no time and of a day") {
   }
 }
 
-// Hard: logic alone takes twice the target, whatever is drawn: the error never changes sign. By hand: both rest at the coarsest
-// bound, 27 steps, do not move there, and when the load goes away after 300 frames are back in as many as a cut takes.
+// Hard: logic alone takes twice the target, whatever is drawn: the error never changes sign. By hand: both rest at the
+// coarsest bound, 27 steps, do not move there, and when the load goes away after 300 frames are back in as many as a
+// cut takes.
 TEST_CASE("control: a target below the fixed cost of a frame") {
   const auto plant = [](int k, int too_low) { return (k < 300 ? 2 : 0) + steps(too_low); };
   for (std::string spec : settling()) {
@@ -236,8 +242,9 @@ TEST_CASE("control: a target below the fixed cost of a frame") {
   CHECK(on_target(run("pid:start=128.28", 600, plant), kDeadBand));
 }
 
-// Hard: a frame takes a thousandth of the target at its finest: the error never changes sign on the other side. By hand: the
-// threshold rests at 1 px, everything finer, and time at 0.001 * 1.05^123; when everything becomes 1000 times as dear, they lower.
+// Hard: a frame takes a thousandth of the target at its finest: the error never changes sign on the other side. By
+// hand: the threshold rests at 1 px, everything finer, and time at 0.001 * 1.05^123; when everything becomes 1000 times
+// as dear, they lower.
 TEST_CASE("control: a target above everything") {
   const auto plant = [](int k, int too_low) { return steps(too_low) * (k < 300 ? 1e-3 : 1); };
   for (const std::string& spec : settling()) {

@@ -1,5 +1,5 @@
-// Catalogue, estimators: samples that do not tell two coefficients apart, answers below 0, corrections that are too much,
-// tables without a middle.
+// Catalogue, estimators: samples that do not tell two coefficients apart, answers below 0, corrections that are too
+// much, tables without a middle.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -37,11 +37,11 @@ EstimateOutcome outcome(double estimated_s, double actual_s) {
 
 }  // namespace
 
-// Hard: two trees that are proportional but for 10^-k: the determinant of the pair is 10^-k of its products, the condition of
-// c1 and c2 10^k, and at k = 16 the difference is the last bit of a double. Times are exact to 2^-53, so that a pair's c1
-// may be wrong by 10^k * 2^-53 of itself: at k = 12 1e-4, and beyond it a pair is left out. Least squares must not be worse
-// where it solves, and where it cannot tell the columns apart (from 10^6 on, see least_squares.h) must still give costs
-// that are not negative and explain the measured times to 1e-6.
+// Hard: two trees that are proportional but for 10^-k: the determinant of the pair is 10^-k of its products, the
+// condition of c1 and c2 10^k, and at k = 16 the difference is the last bit of a double. Times are exact to 2^-53, so
+// that a pair's c1 may be wrong by 10^k * 2^-53 of itself: at k = 12 1e-4, and beyond it a pair is left out. Least
+// squares must not be worse where it solves, and where it cannot tell the columns apart (from 10^6 on, see
+// least_squares.h) must still give costs that are not negative and explain the measured times to 1e-6.
 TEST_CASE("estimators: pairs and least squares up to a condition of 1e16") {
   for (int k = 1; k <= 16; ++k) {
     CAPTURE(k);
@@ -65,7 +65,8 @@ TEST_CASE("estimators: pairs and least squares up to a condition of 1e16") {
   }
 }
 
-// Hard: the determinant of two equal trees is exactly 0. No pair can be solved; polygons carry all of the cost (2 ms / 1000).
+// Hard: the determinant of two equal trees is exactly 0. No pair can be solved; polygons carry all of the cost (2 ms /
+// 1000).
 TEST_CASE("estimators: nothing but two equal trees") {
   const LinearSample tree{.time_s = 2e-3, .polygons = 1000, .texture_bytes = 1e6};
   const std::vector<LinearSample> equal{tree, tree};
@@ -81,8 +82,8 @@ TEST_CASE("estimators: nothing but two equal trees") {
   }
 }
 
-// Hard: c1 + 2 c2 = 1, 2 c1 + c2 = 3 has c1 = 5/3, c2 = -1/3: a texture that earns time. As printed that is the answer. Not
-// negative, c1 minimises (1 - c1)^2 + (3 - 2 c1)^2: 7/5.
+// Hard: c1 + 2 c2 = 1, 2 c1 + c2 = 3 has c1 = 5/3, c2 = -1/3: a texture that earns time. As printed that is the answer.
+// Not negative, c1 minimises (1 - c1)^2 + (3 - 2 c1)^2: 7/5.
 TEST_CASE("estimators: a pair whose solution is negative") {
   const std::vector<LinearSample> samples{{.time_s = 1, .polygons = 1, .texture_bytes = 2},
                                           {.time_s = 3, .polygons = 2, .texture_bytes = 1}};
@@ -92,9 +93,10 @@ TEST_CASE("estimators: a pair whose solution is negative") {
   CHECK(fit_least_squares(samples).c2 == 0);
 }
 
-// The same through the machine: 10 polygons with 1 MB of texture, not a pixel, take 10 us + 1 ms; 100 polygons that fill 10^4 px
-// of 10 us take 100 ms. c1 = 1 ms a polygon, so that the first would take 10 ms and its texture -9 ms. A representation
-// that is all texture must not be estimated below a picosecond, with any solver, nor a frame be paid for drawing it.
+// The same through the machine: 10 polygons with 1 MB of texture, not a pixel, take 10 us + 1 ms; 100 polygons that
+// fill 10^4 px of 10 us take 100 ms. c1 = 1 ms a polygon, so that the first would take 10 ms and its texture -9 ms. A
+// representation that is all texture must not be estimated below a picosecond, with any solver, nor a frame be paid for
+// drawing it.
 TEST_CASE("estimators: negative coefficients never make a cost below a picosecond") {
   const Facts textured{.polygons = 10, .texture_bytes = 1e6, .draws = 0, .coverage = 0};
   const Facts filling{.polygons = 100, .draws = 0, .coverage = 1};
@@ -131,9 +133,10 @@ TEST_CASE("estimators: feedback gain 1 is right at once, beyond it is refused") 
   }
 }
 
-// Hard: one frame takes 1000 times its estimate. eq. 9 with beta = 1/2 makes the next estimate 500 times too high, and a budget
-// then draws nothing; the factor is held at 100. By hand: each true frame after it halves what is too much: after k of them
-// the estimate is 1 + 99/2^k of the truth, 1.006 after 14. The same the other way: a frame of no time halves, once.
+// Hard: one frame takes 1000 times its estimate. eq. 9 with beta = 1/2 makes the next estimate 500 times too high, and
+// a budget then draws nothing; the factor is held at 100. By hand: each true frame after it halves what is too much:
+// after k of them the estimate is 1 + 99/2^k of the truth, 1.006 after 14. The same the other way: a frame of no time
+// halves, once.
 TEST_CASE("estimators: an outlier is forgotten by half in each frame") {
   const Facts tree{.polygons = 1000, .texture_bytes = 1e6, .draws = 0};
   const auto estimator = make_estimator("linear-feedback:beta=0.5");
@@ -151,9 +154,9 @@ TEST_CASE("estimators: an outlier is forgotten by half in each frame") {
   CHECK(estimator->cost_s(tree, 1) == Approx(truth / 2).epsilon(1e-9));
 }
 
-// Hard: one of eight measured trees took 1000 times as long (the system was busy). The mean over pairs takes any sign and size;
-// least squares stays a cost: not negative, not all 0 (feedback multiplies, it could not mend that), and no dearer than if
-// everything had been as slow.
+// Hard: one of eight measured trees took 1000 times as long (the system was busy). The mean over pairs takes any sign
+// and size; least squares stays a cost: not negative, not all 0 (feedback multiplies, it could not mend that), and no
+// dearer than if everything had been as slow.
 TEST_CASE("estimators: an outlier among the samples leaves costs of 0 and above") {
   std::vector<LinearSample> samples;
   for (int k = 1; k <= 8; ++k) {
@@ -173,10 +176,11 @@ TEST_CASE("estimators: an outlier among the samples leaves costs of 0 and above"
   }
 }
 
-// Hard: the step is larger than the screen, so that the table is one sample and the origin, and the step of the logic table
-// larger than the scene: nothing to interpolate between. By hand: 10 ns a pixel, half as much again at 2^20 px, f(A) = 1e-8 A
-// (1 + A / 2^21); the one sample is at 10^8 px, f = 48.68 s, hence 0.4868 us a pixel: right there, 48.7 times too high where A is
-// small, never negative, never 0/0. Logic, 1 ms + 2 us an item, is a line and right everywhere.
+// Hard: the step is larger than the screen, so that the table is one sample and the origin, and the step of the logic
+// table larger than the scene: nothing to interpolate between. By hand: 10 ns a pixel, half as much again at 2^20 px,
+// f(A) = 1e-8 A (1 + A / 2^21); the one sample is at 10^8 px, f = 48.68 s, hence 0.4868 us a pixel: right there, 48.7
+// times too high where A is small, never negative, never 0/0. Logic, 1 ms + 2 us an item, is a line and right
+// everywhere.
 TEST_CASE("estimators: a table with one sample") {
   MachineProfile profile{.name = "curved", .source = "made up"};
   profile.algorithm[static_cast<std::size_t>(Algorithm::flat)] = {.pixel_s = 1e-8, .pixel_nonlinearity = 0.5};

@@ -25,8 +25,8 @@ inline void check_sound(const Policy& policy, const TestWorkload& w, const Selec
   if (traits.keeps_budget && least_s <= budget_s) REQUIRE(s.planned_cost_s <= budget_s * (1 + 1e-12));
 }
 
-// Every policy at budgets of these shares of everything's finest cost, each twice in a row (warm from the frame before) and
-// twice over, prepared afresh: the second time must give the same bits.
+// Every policy at budgets of these shares of everything's finest cost, each twice in a row (warm from the frame before)
+// and twice over, prepared afresh: the second time must give the same bits.
 inline void every_policy_copes(const TestWorkload& w,
                                const std::vector<double>& budget_shares = {0, 1e-9, 0.1, 0.5, 0.9, 1, 2}) {
   const bool has_curves =

@@ -1,8 +1,8 @@
-// Catalogue, geometry: places of the camera and sizes of objects where distance, angle or area is 0, infinite or cancels.
+// Catalogue, geometry: places of the camera and sizes of objects where distance, angle or area is 0, infinite or
+// cancels.
 #include <fmt/format.h>
 
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -109,9 +109,10 @@ frames = 9
 
 }  // namespace
 
-// Hard: at d = r the sphere fills half of all directions, just outside the formula pi*(f*r/d)^2 is none of a sphere so near,
-// and rounding decides on which side the eye is. By hand: f = 360 px, r = d = 5 m is a disc of pi * 360^2 = 407,150 px, less
-// than the screen's 518,400, so the step from outside to inside is one up to the whole screen, never down.
+// Hard: at d = r the sphere fills half of all directions, just outside the formula pi*(f*r/d)^2 is none of a sphere so
+// near, and rounding decides on which side the eye is. By hand: f = 360 px, r = d = 5 m is a disc of pi * 360^2 =
+// 407,150 px, less than the screen's 518,400, so the step from outside to inside is one up to the whole screen, never
+// down.
 TEST_CASE("geometry: the eye on a bounding sphere") {
   const Screen screen = square_screen();
   CHECK(projected_area_px(5, 5, 5, screen) == 518'400);
@@ -126,9 +127,10 @@ TEST_CASE("geometry: the eye on a bounding sphere") {
   CHECK(std::isfinite(w.benefit[0]));
 }
 
-// Hard: with single-precision places a metre at 10^7 m is one unit in the last place, and differences of places lose all that
-// is finer. By hand: two spheres 10 m and 10.001 m before an eye at 10^7 m; doubles are 1.9e-9 m apart there. A third stands
-// at the origin, 10^7 m away: pi * (360 * 1 / 10^7)^2 = 4.07e-9 px, and worth half its size, being of less than one sample.
+// Hard: with single-precision places a metre at 10^7 m is one unit in the last place, and differences of places lose
+// all that is finer. By hand: two spheres 10 m and 10.001 m before an eye at 10^7 m; doubles are 1.9e-9 m apart there.
+// A third stands at the origin, 10^7 m away: pi * (360 * 1 / 10^7)^2 = 4.07e-9 px, and worth half its size, being of
+// less than one sample.
 TEST_CASE("geometry: ten thousand kilometres out, millimetres still count") {
   const double far_m = 1e7;
   const Workload w = seen(
@@ -143,8 +145,8 @@ TEST_CASE("geometry: ten thousand kilometres out, millimetres still count") {
 }
 
 // Hard: the frustum's planes stand 10^7 m from the origin, so that an object 1 mm inside or outside is told from the
-// difference of two numbers of 10^7. 45 degrees to the side at depth 10 m; the sphere's radius is 1 m, so it is out from a
-// distance of 1 m from the side plane on: at x = 10 + sqrt(2).
+// difference of two numbers of 10^7. 45 degrees to the side at depth 10 m; the sphere's radius is 1 m, so it is out
+// from a distance of 1 m from the side plane on: at x = 10 + sqrt(2).
 TEST_CASE("geometry: what is a millimetre out of view ten thousand kilometres out") {
   const double far_m = 1e7, edge_m = 10 + std::sqrt(2.0);
   const Workload w = seen(spheres(
@@ -153,9 +155,10 @@ TEST_CASE("geometry: what is a millimetre out of view ten thousand kilometres ou
   CHECK(index(w.id[0]) == 0);
 }
 
-// Hard: the focal length is screen / (2 tan(fov/2)): infinite towards 0 degrees, 0 towards 180. The reader allows above 0 and
-// up to 179.5. By hand: at 179.5 degrees tan is 229.2, f = 360 / 229.2 = 1.571 px. At 1e-300 degrees f = 360 / 8.7e-303 =
-// 4e304 px, whose square is infinite, and whatever is in view fills the screen; at 1e-310 degrees f itself is infinite.
+// Hard: the focal length is screen / (2 tan(fov/2)): infinite towards 0 degrees, 0 towards 180. The reader allows above
+// 0 and up to 179.5. By hand: at 179.5 degrees tan is 229.2, f = 360 / 229.2 = 1.571 px. At 1e-300 degrees f = 360 /
+// 8.7e-303 = 4e304 px, whose square is infinite, and whatever is in view fills the screen; at 1e-310 degrees f itself
+// is infinite.
 TEST_CASE("geometry: fields of view near 0 and near 180 degrees") {
   for (const char* fov : {"0deg", "-1deg", "179.6deg", "180deg", "360deg", "nandeg"}) {
     CAPTURE(fov);
@@ -184,8 +187,9 @@ TEST_CASE("geometry: fields of view near 0 and near 180 degrees") {
   CHECK(focal_length_px(wide) == Approx(360 / 229.1817).epsilon(1e-6));
 }
 
-// Hard: tan(90 degrees) is 1.6e16 as computed, beyond it tan is negative, which would make what is behind the most important
-// of all. By hand (a1 = 0.6, a2 = 0.4, B = 0.6*15 + 0.4*100/6 = 15.667): held at 1e6, I = 15.667 / (0.6 * (1 + 1e6) * 10 + 6.67).
+// Hard: tan(90 degrees) is 1.6e16 as computed, beyond it tan is negative, which would make what is behind the most
+// important of all. By hand (a1 = 0.6, a2 = 0.4, B = 0.6*15 + 0.4*100/6 = 15.667): held at 1e6, I = 15.667 / (0.6 * (1
+// + 1e6) * 10 + 6.67).
 TEST_CASE("geometry: a view angle of 90 degrees, and the doubles beside it") {
   const double expected = (9 + 20.0 / 3) / (0.6 * (1 + kMostTangent) * 10 + 20.0 / 3);
   for (const double theta : {kRight, std::nextafter(kRight, 0.0), std::nextafter(kRight, 2.0), std::numbers::pi}) {
@@ -205,10 +209,10 @@ TEST_CASE("geometry: crown area 0, alone and for all") {
                             {.projected_area_px = 0, .area_m2 = 0, .diagonal_m = 0}}));
 }
 
-// Hard: Dong's share of leaves 1/ln(d) is infinite at d = 1 m, negative below, and above 1 up to d = e. No policy here culls
-// leaves, so no such share is computed; what is: distance thresholds, 1/distance, and importance around these distances,
-// none of which may break there. By hand: first = e, ratio 1.5: 1 m and e are within the first threshold (finest), the next
-// double after e is not.
+// Hard: Dong's share of leaves 1/ln(d) is infinite at d = 1 m, negative below, and above 1 up to d = e. No policy here
+// culls leaves, so no such share is computed; what is: distance thresholds, 1/distance, and importance around these
+// distances, none of which may break there. By hand: first = e, ratio 1.5: 1 m and e are within the first threshold
+// (finest), the next double after e is not.
 TEST_CASE("geometry: distances 0, 1 and e") {
   const double e = std::numbers::e;
   const TestWorkload w = views({{.distance_m = 0},
@@ -221,8 +225,9 @@ TEST_CASE("geometry: distances 0, 1 and e") {
   CHECK(s.level == Levels{2, 2, 2, 2, 1});
 }
 
-// Hard: all four value functions divide by depth or distance, two of them by its square, and depth may be 0 or negative. By
-// hand: everything nearer than `near` (0.1 m) counts as there, so equal areas get equal shares of 6 s, 2 each.
+// Hard: all four value functions divide by depth or distance, two of them by its square, and depth may be 0 or
+// negative. By hand: everything nearer than `near` (0.1 m) counts as there, so equal areas get equal shares of 6 s, 2
+// each.
 TEST_CASE("geometry: depth 0 in each value function") {
   TestWorkload w;
   for (const double depth_m : {0.0, -0.0, kDenormal}) w.add_curve(10, 1, {.depth_m = depth_m, .distance_m = 0});
@@ -237,8 +242,9 @@ TEST_CASE("geometry: depth 0 in each value function") {
   }
 }
 
-// Hard: a bounding sphere of radius 0 (a radius below the smallest single, 1.4e-45 m, becomes that) at the eye, before it, on
-// the near plane and far away, and the largest that a scene can have: radius 10^9 m * scale 10^6, around everything.
+// Hard: a bounding sphere of radius 0 (a radius below the smallest single, 1.4e-45 m, becomes that) at the eye, before
+// it, on the near plane and far away, and the largest that a scene can have: radius 10^9 m * scale 10^6, around
+// everything.
 TEST_CASE("geometry: degenerate bounds") {
   const Workload w = seen(spheres({{{0, 0, 0}, 0},
                                    {{0, 0, -5}, 0},

@@ -1,4 +1,5 @@
-// Catalogue, ratios of benefit to cost: tables of levels on which a comparison of slopes divides by 0, ties, or cancels.
+// Catalogue, ratios of benefit to cost: tables of levels on which a comparison of slopes divides by 0, ties, or
+// cancels.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,8 +24,8 @@ double best_of(const char* policy, const TestWorkload& w, double budget_s) {
 }  // namespace
 
 // Hard: benefit / 0 is infinite and 0 / 0 is not a number, and either decides all comparisons that follow. No scene may
-// state a cost of 0, but counts that cost nothing on a machine come to it: every estimator must answer a picosecond, the
-// clock's resolution, at least, and a finite one.
+// state a cost of 0, but counts that cost nothing on a machine come to it: every estimator must answer a picosecond,
+// the clock's resolution, at least, and a finite one.
 TEST_CASE("ratios: no estimator ever prices a level at 0") {
   MachineProfile free{.name = "free", .source = "made up: everything costs nothing"};
   SceneFacts scene{.name = "free", .types = {}, .instances = 3, .frames = 1, .screen_px = 1e6};
@@ -41,8 +42,9 @@ TEST_CASE("ratios: no estimator ever prices a level at 0") {
   }
 }
 
-// Hard: levels that cost (next to) nothing beside levels that are worth nothing, and levels that are neither. By hand: the
-// free item B goes to its best level whatever the budget, A's 5 for 1 s fits from 1 s on, C is never worth its cost; 7 + 5.
+// Hard: levels that cost (next to) nothing beside levels that are worth nothing, and levels that are neither. By hand:
+// the free item B goes to its best level whatever the budget, A's 5 for 1 s fits from 1 s on, C is never worth its
+// cost; 7 + 5.
 TEST_CASE("ratios: no cost, no benefit, and neither") {
   TestWorkload w;
   w.add_item({{kSmallestCostS, 0}, {1, 5}});
@@ -66,9 +68,10 @@ TEST_CASE("ratios: nothing has any benefit") {
   every_policy_copes(w);
 }
 
-// Hard: 4,000 upgrades of one and the same ratio. A search for the ratio at which the budget is spent takes all of them or
-// none, and an ordering needs a rule of its own for ties. By hand: of 4,000 items at cost 1, benefit 1, that go up to cost
-// 2, benefit 2, a budget of 5,000 pays 1,000 upgrades: benefit 5,000, which is also the bound, as every second costs 1.
+// Hard: 4,000 upgrades of one and the same ratio. A search for the ratio at which the budget is spent takes all of them
+// or none, and an ordering needs a rule of its own for ties. By hand: of 4,000 items at cost 1, benefit 1, that go up
+// to cost 2, benefit 2, a budget of 5,000 pays 1,000 upgrades: benefit 5,000, which is also the bound, as every second
+// costs 1.
 TEST_CASE("ratios: four thousand equal ratios") {
   const int items = static_cast<int>(seeds(4000));
   TestWorkload w;
@@ -84,8 +87,8 @@ TEST_CASE("ratios: four thousand equal ratios") {
 }
 
 // Hard: sums of costs lose the small ones (1e-12 beside 1e12 is 10^-24, double has 10^-16), so a budget that is left is
-// rounding noise. By hand: of one item each at 10^-12 .. 10^12 s, with benefit 1, a budget of 1.5 * 10^k s pays those up to
-// 10^k and no more (10^k + 10^(k-1) + ... = 1.11 * 10^k).
+// rounding noise. By hand: of one item each at 10^-12 .. 10^12 s, with benefit 1, a budget of 1.5 * 10^k s pays those
+// up to 10^k and no more (10^k + 10^(k-1) + ... = 1.11 * 10^k).
 TEST_CASE("ratios: costs from 1e-12 to 1e12 s") {
   TestWorkload w, refined;
   for (int k = -12; k <= 12; ++k) {
@@ -107,9 +110,10 @@ TEST_CASE("ratios: costs from 1e-12 to 1e12 s") {
   }
 }
 
-// Hard: the gain of an upgrade is below one unit in the last place of the benefits, or exactly one: the difference of the two
-// benefits is 0 or all rounding, and a ratio of such differences is noise. No policy may loop or fail on it. By hand: both
-// upgrades of one ulp fit in 4 s; at 3 s only one does, and the sum of benefits 2 + ulp is as good with either.
+// Hard: the gain of an upgrade is below one unit in the last place of the benefits, or exactly one: the difference of
+// the two benefits is 0 or all rounding, and a ratio of such differences is noise. No policy may loop or fail on it. By
+// hand: both upgrades of one ulp fit in 4 s; at 3 s only one does, and the sum of benefits 2 + ulp is as good with
+// either.
 TEST_CASE("ratios: benefits that differ by one ulp or less") {
   const double one_more = std::nextafter(1.0, 2.0);
   TestWorkload w;
@@ -126,8 +130,9 @@ TEST_CASE("ratios: benefits that differ by one ulp or less") {
   CHECK(best_of("exact", large, 3) == 3e17);
 }
 
-// Hard: a table on which "the next level gains less for its cost" fails: greedy rules stop before a steep last level, and
-// levels that cost more and show less must never be taken for their index. Optimum by brute force over all selections.
+// Hard: a table on which "the next level gains less for its cost" fails: greedy rules stop before a steep last level,
+// and levels that cost more and show less must never be taken for their index. Optimum by brute force over all
+// selections.
 TEST_CASE("ratios: tables that are not concave and not monotone") {
   TestWorkload w;
   w.add_item({{1, 1}, {2, 1.1}, {3, 9}});                  // convex: the second level is below the line
@@ -142,9 +147,9 @@ TEST_CASE("ratios: tables that are not concave and not monotone") {
   }
 }
 
-// Hard: duplicate levels have a gain of 0 for a cost of 0, hence a ratio of 0/0. By hand: 2 items with each level there three
-// times; 3 s pays the dear level (2 s, 10) of one and the cheap one (1 s, 6) of the other. impostor-tree
-// goes level by level and never makes a step that gains nothing (unless asked), so duplicates keep it at 12: known.
+// Hard: duplicate levels have a gain of 0 for a cost of 0, hence a ratio of 0/0. By hand: 2 items with each level there
+// three times; 3 s pays the dear level (2 s, 10) of one and the cheap one (1 s, 6) of the other. impostor-tree goes
+// level by level and never makes a step that gains nothing (unless asked), so duplicates keep it at 12: known.
 TEST_CASE("ratios: duplicate levels") {
   TestWorkload w;
   for (int i = 0; i < 2; ++i) w.add_item({{1, 6}, {1, 6}, {1, 6}, {2, 10}, {2, 10}, {2, 10}});

@@ -27,8 +27,9 @@ std::vector<std::string> scene_files() {
   return files;
 }
 
-// All numbers are some: times between 0 and the hundred days of the clock, costs and benefits neither infinite nor negative, and
-// within the budget no benefit above its upper bound. What would come of a NaN anywhere in visibility, costs or choice.
+// All numbers are some: times between 0 and the hundred days of the clock, costs and benefits neither infinite nor
+// negative, and within the budget no benefit above its upper bound. What would come of a NaN anywhere in visibility,
+// costs or choice.
 std::string fault(const FrameRecord& r) {
   const std::int64_t most_ps = 100 * kLongestDuration.count();
   for (const std::int64_t t : {r.cpu_start_ps, r.logic_ps, r.visibility_ps, r.decide_ps, r.submitted_ps, r.drawn_ps,
@@ -76,7 +77,11 @@ TEST_CASE("hard scenes: every file under every policy gives finite numbers, and 
         }
         CHECK(wrong == "");
         CHECK(fault(result.summary) == "");
-        if (target_s == scene.targets_s.front()) CHECK(run(spec, scene).records_hash == result.records_hash);
+        if (target_s != scene.targets_s.front()) continue;
+        CHECK(run(spec, scene).records_hash == result.records_hash);
+#if defined(FRAMESIM_SANITIZED)
+        break;  // of the targets: the kinds of access are the same at all
+#endif
       }
     }
   }

@@ -22,7 +22,8 @@ constexpr std::int64_t kMany = 1'000'000;
 constexpr std::int64_t kMany = 10'000'000;
 #endif
 
-// Difference of frame k from 16.67 ms: without a pattern, evenly from -86,602 to 86,602 ps, so with a deviation of 50 ns.
+// Difference of frame k from 16.67 ms: without a pattern, evenly from -86,602 to 86,602 ps, so with a deviation of 50
+// ns.
 std::int64_t difference_ps(std::int64_t k) { return k * 48'271 % 173'205 - 86'602; }
 
 std::vector<FrameRecord> frames_of(const std::vector<std::int64_t>& times_ps) {
@@ -36,10 +37,11 @@ std::vector<FrameRecord> frames_of(const std::vector<std::int64_t>& times_ps) {
 
 }  // namespace
 
-// Hard: the deviation is 3e-6 of the mean. E[x^2] - mean^2 takes two numbers of 2.8e-4 apart, which differ by 2.5e-15: after
-// 10^7 roundings nothing of it is left. Whole picoseconds give the exact sums: s^2 = (n sum d^2 - (sum d)^2) / (n (n - 1)).
-// Welford's mean is rounded each time, to 1.7e-18 s; 10^7 such steps at random are 5e-15 s, 1e-7 of the deviation, and as
-// they are not correlated with the data the deviation keeps 1e-9. The compensated mean is exact but for its own rounding.
+// Hard: the deviation is 3e-6 of the mean. E[x^2] - mean^2 takes two numbers of 2.8e-4 apart, which differ by 2.5e-15, 50
+// thousand units in their last place, while each sum has rounded 10^7 times: three figures of it are left, if any. Whole
+// picoseconds give the exact sums: s^2 = (n sum d^2 - (sum d)^2) / (n (n - 1)). Welford's mean is rounded each time, to
+// 1.7e-18 s; 10^7 such steps at random are 5e-15 s, 1e-7 of the deviation, and as they are not correlated with the data the
+// deviation keeps 1e-9. The compensated mean is exact but for its own rounding.
 TEST_CASE("statistics: ten million frame times of 16.67 ms with 50 ns deviation") {
   Moments moments;
   CompensatedSum sum;
@@ -65,7 +67,7 @@ TEST_CASE("statistics: ten million frame times of 16.67 ms with 50 ns deviation"
   CHECK(std::fabs(static_cast<double>(sum.value() / static_cast<double>(n) / mean - 1)) <= 2.3e-16);
   const double count = static_cast<double>(n),
                by_squares = naive_squares / count - naive_sum / count * (naive_sum / count);
-  CHECK_FALSE(std::fabs(std::sqrt(by_squares) / 50e-9 - 1) < 1e-3);  // not a number, or far off
+  CHECK_FALSE(std::fabs(std::sqrt(by_squares) / static_cast<double>(deviation) - 1) < 1e-5);  // or not a number
 }
 
 // By hand: 16 and 20 ms against 17 ms. Mean 18, deviation sqrt((4 + 4) / 1) = 2.828 ms, AvgErr (1 + 3) / 2 / 17, 95th
@@ -81,8 +83,8 @@ TEST_CASE("statistics: two frames") {
   CHECK(s.over_target == 0.5);
 }
 
-// Hard: a deviation of exactly 0 that comes out as sqrt(-1e-19), not a number, or as 1e-10. 1/60 s is no whole number of
-// picoseconds and no binary fraction; 12,000 of it.
+// Hard: a deviation of exactly 0 that comes out as sqrt(-1e-19), not a number, or as 1e-10. 1/60 s is no whole number
+// of picoseconds and no binary fraction; 12,000 of it.
 TEST_CASE("statistics: frames that are all equal") {
   for (const std::int64_t t : {1LL, 16'666'666'667LL, 86'400'000'000'000'000LL}) {
     CAPTURE(t);
@@ -97,9 +99,9 @@ TEST_CASE("statistics: frames that are all equal") {
   }
 }
 
-// By hand, h = (n - 1) p: of {1} any is 1; of {1, 2} 1 + p; of {1, 2, 4} p = 0.75 is h = 1.5, between 2 and 4. An index that
-// is computed one too high reads past the end at p = 1, and interpolation between equal neighbours must give them back, down
-// to the smallest double.
+// By hand, h = (n - 1) p: of {1} any is 1; of {1, 2} 1 + p; of {1, 2, 4} p = 0.75 is h = 1.5, between 2 and 4. An index
+// that is computed one too high reads past the end at p = 1, and interpolation between equal neighbours must give them
+// back, down to the smallest double.
 TEST_CASE("statistics: percentiles of one, two and three") {
   const std::vector<double> one{1}, two{1, 2}, three{1, 2, 4};
   for (const double p : {0.0, 0.01, 0.5, 0.95, 0.99, 1.0}) {

@@ -25,8 +25,8 @@ constexpr std::size_t kMany = 1'000'000;
 // What an instance can use at x = 1 where nothing is to saturate: more than any budget here.
 constexpr double kPlenty_s = 2;
 
-// Curves of these values (a*I/z with I = z = 1) and costs at x = 1, all of one type, so paid in this order. What a curve
-// below x = 1 gets is all spent: resolution * cost is its share.
+// Curves of these values (a*I/z with I = z = 1) and costs at x = 1, all of one type, so paid in this order. What a
+// curve below x = 1 gets is all spent: resolution * cost is its share.
 TestWorkload curves(const std::vector<double>& values, const std::vector<double>& costs_s) {
   TestWorkload w;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -119,11 +119,11 @@ TEST_CASE("sums: half a million tiny leftovers all arrive") {
   }
 }
 
-// Hard: every eighth instance can use half of its share only, so that the price of value rises 30-fold over the list while
-// values fall by 24 orders. What the last ones get is what all others left of 1 s: an error in the last place of budget or
-// costs reaches them 30 times enlarged (10^6 times, if it were every second instance), in any arithmetic. Reference: the
-// rule in 80 bits, in the form that only adds terms above 0: 10^6 additions of 2^-64 each are 5e-14. One instance, the
-// dearest, may pay for the rounding of the sum of all: 4 units in the last place of the budget, 9e-16 s.
+// Hard: every eighth instance can use half of its share only, so that the price of value rises 30-fold over the list
+// while values fall by 24 orders. What the last ones get is what all others left of 1 s: an error in the last place of
+// budget or costs reaches them 30 times enlarged (10^6 times, if it were every second instance), in any arithmetic.
+// Reference: the rule in 80 bits, in the form that only adds terms above 0: 10^6 additions of 2^-64 each are 5e-14. One
+// instance, the dearest, may pay for the rounding of the sum of all: 4 units in the last place of the budget, 9e-16 s.
 TEST_CASE("sums: leftovers passed on over 24 orders of magnitude, the last shares right to 1e-12") {
   const std::vector<double> values = falling_values(kMany);
   std::vector<long double> behind(kMany + 1, 0);
@@ -150,8 +150,8 @@ TEST_CASE("sums: leftovers passed on over 24 orders of magnitude, the last share
   CHECK(error(shares.back(), expected.back()) <= 1e-12);
 }
 
-// Hard: after the one instance v_f is exactly 0 for all others: 0 * t_r / 0. It has the whole budget of 9; 3 is all it can
-// use, and the two without value share the 6 it leaves, 3 each.
+// Hard: after the one instance v_f is exactly 0 for all others: 0 * t_r / 0. It has the whole budget of 9; 3 is all it
+// can use, and the two without value share the 6 it leaves, 3 each.
 TEST_CASE("sums: one instance has all the value") {
   const TestWorkload w = curves({5, 0, 0}, {3, 10, 10});
   CHECK(shares_s("robin-hood:value=9", w, 9) == std::vector<double>{3, 3, 3});
@@ -166,9 +166,9 @@ TEST_CASE("sums: one instance has all the value") {
   }
 }
 
-// Hard: 0.1 + 0.2 + 0.3 less 0.1, 0.2 and 0.3 is 5.6e-17 in one order and 0 in another: v_f ends at exactly 0, below it, or
-// above, by chance. In every order of the values every share of 6 s must be 6 * value / 0.6, the printed rule's as well (no
-// cancellation reaches these figures), and none negative.
+// Hard: 0.1 + 0.2 + 0.3 less 0.1, 0.2 and 0.3 is 5.6e-17 in one order and 0 in another: v_f ends at exactly 0, below
+// it, or above, by chance. In every order of the values every share of 6 s must be 6 * value / 0.6, the printed rule's
+// as well (no cancellation reaches these figures), and none negative.
 TEST_CASE("sums: subtraction to exactly 0, or just beside it") {
   std::vector<double> values{0.1, 0.2, 0.3, 0};
   do {
@@ -183,9 +183,9 @@ TEST_CASE("sums: subtraction to exactly 0, or just beside it") {
   } while (std::next_permutation(values.begin(), values.end()));
 }
 
-// The general form of the same division, with bounds: weights 2^-40 .. 2^40, one of them saturated from each end. High 1 s
-// binds for the largest weight, low 1 s for the smallest; the other 79 share what is left of 4 s, 2 s, in proportion:
-// their sum is 2^40 - 2^-39.
+// The general form of the same division, with bounds: weights 2^-40 .. 2^40, one of them saturated from each end. High
+// 1 s binds for the largest weight, low 1 s for the smallest; the other 79 share what is left of 4 s, 2 s, in
+// proportion: their sum is 2^40 - 2^-39.
 TEST_CASE("sums: shares in boxes over 24 orders of magnitude of weight") {
   std::vector<ShareBox> boxes;
   for (int e = -40; e <= 40; ++e) boxes.push_back({.weight = std::ldexp(1.0, e), .low_s = 0, .high_s = 100});

@@ -1,5 +1,5 @@
-// Catalogue, time: long runs, very short commands, frames without any time. (Simultaneous events and the end of the clock are
-// tested beside the event queue and the engines: see CATALOGUE.md.)
+// Catalogue, time: long runs, very short commands, frames without any time. (Simultaneous events and the end of the
+// clock are tested beside the event queue and the engines: see CATALOGUE.md.)
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -39,8 +39,9 @@ PipelineFrame picoseconds(std::size_t commands, std::int64_t late = 0) {
 }
 
 // With one frame in flight a frame of n commands takes n ps and 1 ps for the last to pass the second stage: shown[k] =
-// (k + 1)(n + 1). With two the next frame's commands follow without a gap: shown[k] = (k + 1) n + 1. The clock starts 10^17
-// ps = 27.8 hours late, where the unit in the last place of seconds as double is 15 ps: adding 1 ps would change nothing.
+// (k + 1)(n + 1). With two the next frame's commands follow without a gap: shown[k] = (k + 1) n + 1. The clock starts
+// 10^17 ps = 27.8 hours late, where the unit in the last place of seconds as double is 15 ps: adding 1 ps would change
+// nothing.
 void run_picoseconds(std::int64_t frames, std::int64_t commands) {
   constexpr std::int64_t kLate = 100'000'000'000'000'000;
   CHECK(1e5 + 1e-12 == 1e5);
@@ -59,7 +60,8 @@ void run_picoseconds(std::int64_t frames, std::int64_t commands) {
 }  // namespace
 
 // Hard: 5,184,000 frames of 1/60 s: a clock in double seconds has rounded once a frame and is off by thousands of
-// picoseconds, and thereby is not the same on every machine. By hand: frame k ends at exactly (k + 1) * 16,666,666,667 ps.
+// picoseconds, and thereby is not the same on every machine. By hand: frame k ends at exactly (k + 1) * 16,666,666,667
+// ps.
 TEST_CASE("time: 24 simulated hours of frames end on their picosecond") {
   constexpr std::int64_t kFrame = 16'666'666'667;
   const auto frames = static_cast<std::int64_t>(seeds(5'184'000));
@@ -83,14 +85,16 @@ TEST_CASE("time: 24 simulated hours of frames end on their picosecond") {
   }
 }
 
-// Hard: commands a million times shorter than the resolution of most clocks, and sums of 10^9 of them: see run_picoseconds.
+// Hard: commands a million times shorter than the resolution of most clocks, and sums of 10^9 of them: see
+// run_picoseconds.
 TEST_CASE("time: a million commands of 1 ps each, 28 hours into the run") { run_picoseconds(1000, 1000); }
 TEST_CASE("time: a billion commands of 1 ps each, 28 hours into the run", "[.long]") {
   run_picoseconds(10'000, 100'000);
 }
 
-// Hard: with no duration at all everything happens at one instant, a frame's start is its end, frame rates are infinite and
-// all shares of time are 0/0. Frames of 0 ps are shown at 0; with a display of 5 ps one at each blank, from the one at 0 on.
+// Hard: with no duration at all everything happens at one instant, a frame's start is its end, frame rates are infinite
+// and all shares of time are 0/0. Frames of 0 ps are shown at 0; with a display of 5 ps one at each blank, from the one
+// at 0 on.
 TEST_CASE("time: frames of 0 ps") {
   for (const auto& engine : serial_engines()) {
     const PipelineFrame nothing = make_frame(0, 0, {{0, 0, 0}, {0, 0, 0}});
@@ -121,8 +125,9 @@ TEST_CASE("time: measures of frames of 0 ps") {
   CHECK(s.latency_s == 0);
 }
 
-// Hard: all stages of all commands take 0 or 1 ps, so that nearly every event has others at its instant, in every phase. What
-// happens first then decides whether a FIFO of one place is full: recurrence and event queue must agree to the picosecond.
+// Hard: all stages of all commands take 0 or 1 ps, so that nearly every event has others at its instant, in every
+// phase. What happens first then decides whether a FIFO of one place is full: recurrence and event queue must agree to
+// the picosecond.
 TEST_CASE("time: simultaneous events in every phase, recurrence and event queue agree") {
   for (std::uint64_t seed = 1; seed <= seeds(300); ++seed) {
     CAPTURE(seed);
