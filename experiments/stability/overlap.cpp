@@ -35,21 +35,30 @@ double budget_s(const char* planner, double logic_s, double target_s, double sha
   return find_entry("planner", planners(), spec).make(spec.settings)->budget_s(input);
 }
 
+// Where a comparison with t_l decides which form holds: rounding may turn it at the kink, where the forms part by 1/s.
+double by_comparison_s(double t_l, double t_f, double s) {
+  const double longer = t_f - s * t_l;
+  return longer >= t_l ? longer : (t_f - t_l) / s;
+}
+
 // t_r of max + s*min = t_f. Where drawing is the longer, t_f - s*t_l is at least s*t_l: product and difference, eps. Else
-// (t_f - t_l) / s: difference and quotient, eps.
+// (t_f - t_l) / s: difference and quotient, eps. The smaller of the two is the right one.
 void add_inverse(std::vector<StabilityRow>& rows) {
-  ErrorCollector ours, none;
+  ErrorCollector ours, comparison;
   for (const double share : {0.02, 0.25, 1.0 / 3, 0.5, 1.0}) {
     for (const double target_s : {0.001, 0.016, 1.0 / 60, 0.2}) {
-      for (const double part : {1e-12, 0.1, 0.5, 0.6, 0.75, 0.9, 0.98, 0.999, 0.999999, 0.999999999999}) {
+      // The last one is the kink.
+      for (const double part : {1e-12, 0.1, 0.5, 0.6, 0.75, 0.9, 0.999, 0.999999999999, 1 / (1 + share)}) {
         const double logic_s = target_s * part;
-        const Exact t_f = target_s, t_l = logic_s, s = share, longer = t_f - s * t_l;
-        ours.add(budget_s("inverse", logic_s, target_s, share), longer >= t_l ? longer : Exact((t_f - t_l) / s));
+        const Exact t_f = target_s, t_l = logic_s, s = share;
+        const Exact expected = std::min<Exact>(t_f - s * t_l, (t_f - t_l) / s);
+        ours.add(budget_s("inverse", logic_s, target_s, share), expected);
+        comparison.add(by_comparison_s(logic_s, target_s, share), expected);
       }
     }
   }
-  rows.push_back(make_row("logic from 1e-12 of the target to all but that", "drawing time (inverse of max + s min)", "", 1, ours,
-                          none));
+  rows.push_back(make_row("logic from 1e-12 of the target to all but that", "drawing time (inverse of max + s min)",
+                          "the form that a comparison chooses", 1, ours, comparison));
 }
 
 // Robin Hood's rule as printed: l = (t_l/t_f)^2 is wrong by 3 eps/2, rho = 1 - l by that times l/rho and eps/2, rho^2 * t_f by

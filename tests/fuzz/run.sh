@@ -6,7 +6,7 @@
 # $FRAMESIM_FUZZ_BUILD/findings/TARGET/ and ends the script with 1. Inputs that reach new code are kept in
 # $FRAMESIM_FUZZ_BUILD/grown/TARGET/, so that a later run goes on from there; tests/fuzz/corpus/ is only read.
 #
-# An hour on two processors:   nice sh tests/fuzz/run.sh 720    (ten targets, two at a time)
+# An hour on two processors:   nice sh tests/fuzz/run.sh 655    (eleven targets, two at a time)
 # One finding again:           build-fuzz/fuzz_TARGET build-fuzz/findings/TARGET/crash-...
 set -eu
 cd "$(dirname "$0")/../.."
