@@ -67,14 +67,15 @@ void add_stability(CLI::App& app, Session& session) {
       ->check(CLI::Validator(CLI::IsMember({"markdown", "csv", "html"})).description(""))
       ->capture_default_str();
   verb->add_flag("--with-build", options->with_build, "Begin csv with a line that names compiler and optimisation");
-  verb->add_option("--merge", options->merge,
-                   "Nothing is computed: the csv of several builds as one table, a column each; exit code 1 also if they "
-                   "differ in a number")
+  verb->add_option(
+          "--merge", options->merge,
+          "Nothing is computed: the csv of several builds as one table, a column each; exit code 1 also if they "
+          "differ in a number")
       ->type_name("FILE.csv...");
   add_quiet_option(*verb, session.quiet);
   verb->footer(
-      "Without --with-build csv has no compiler in it: what two builds print is compared with cmp, and --merge names each\n"
-      "column after its file.\n"
+      "Without --with-build csv has no compiler in it: what two builds print is compared with cmp, and\n"
+      "--merge calls each column as its file.\n"
       "Examples:\n"
       "  framesim stability\n"
       "  framesim stability --format csv --with-build > g++.csv\n"

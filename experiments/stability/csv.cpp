@@ -84,7 +84,8 @@ void check_same_rows(const StabilityColumn& first, const std::string& first_path
     if (name_of(a) != name_of(b))
       differs(fmt::format("has the row {} in place of {}", framesim::quoted(name_of(b)), framesim::quoted(name_of(a))));
     if (a.naive_form != b.naive_form || a.cases != b.cases || a.bound_eps != b.bound_eps)
-      differs(fmt::format("has another naive form, number of cases or bound in the row {}", framesim::quoted(name_of(b))));
+      differs(
+          fmt::format("has another naive form, number of cases or bound in the row {}", framesim::quoted(name_of(b))));
   }
 }
 

@@ -87,7 +87,8 @@ void add_inverse(std::vector<StabilityRow>& rows) {
       ours.add(curve_resolution(workload, 0, budget_s), x, condition);
     }
   });
-  rows.push_back(make_row("curves, setup 0 to 1 - 1e-9 of the cost", "resolution of a cost / condition", "", 2.5, ours, none));
+  rows.push_back(
+      make_row("curves, setup 0 to 1 - 1e-9 of the cost", "resolution of a cost / condition", "", 2.5, ours, none));
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ void add_coefficients(std::vector<StabilityRow>& rows, std::int64_t apart, const
   // Orthogonalised m x n equations without residual: matrix and right-hand side as if each were wrong by m n eps/2 (Higham
   // 2002, theorem 20.3), which the condition multiplies; the roundings add up as random ones do, sqrt(m n) eps/2 (Higham and
   // Mary 2019). m = 8, n = 2; c1 and c2 are a half or more of the solution's length: 2 * 4 eps/2 * 2 = 8 eps conditions.
-  rows.push_back(make_row(group, "c1, c2 (least squares)", "mean over pairs (Dong eq. 7, 8)", 8 * condition_of(samples), ours,
-                          pairs));
+  rows.push_back(make_row(group, "c1, c2 (least squares)", "mean over pairs (Dong eq. 7, 8)", 8 * condition_of(samples),
+                          ours, pairs));
 }
 
 // tan is ill-conditioned at a right angle: theta's own rounding is not counted, since 50 digits see the same theta.
@@ -58,7 +58,8 @@ void add_importance(std::vector<StabilityRow>& rows) {
     for (const double d_m : {0x1p-1022, 1e-3, 15.0, 1e7}) {
       for (const double s : {1e-12, 1e-3, 6.0, 100.0}) {
         const double theta = 1.5707963267948966 - gap;
-        const Exact insignificance = Exact(scale.a1) * (1 + tan(Exact(theta))) * Exact(d_m) + Exact(scale.a2) * 100 / Exact(s);
+        const Exact insignificance =
+            Exact(scale.a1) * (1 + tan(Exact(theta))) * Exact(d_m) + Exact(scale.a2) * 100 / Exact(s);
         ours.add(dong_importance(scale, d_m, theta, s), benchmark / insignificance);
       }
     }

@@ -47,8 +47,8 @@ std::vector<std::size_t> hull_of_product(const Points& p) {
   workload.cost_s.assign(p.cost_s.begin() + 1, p.cost_s.end());
   workload.benefit.assign(p.benefit.begin() + 1, p.benefit.end());
   std::vector<std::uint32_t> order, levels;
-  append_upper_hull(workload, 0, {.cost_s = p.cost_s[0], .benefit = p.benefit[0], .most_cost_s = p.cost_s.back()}, order,
-                    levels);
+  append_upper_hull(workload, 0, {.cost_s = p.cost_s[0], .benefit = p.benefit[0], .most_cost_s = p.cost_s.back()},
+                    order, levels);
   std::vector<std::size_t> hull = {0};
   for (const std::uint32_t level : levels) hull.push_back(level + 1);
   return hull;

@@ -24,8 +24,8 @@ void add_overlap(std::vector<StabilityRow>& rows) {
       naive.add(std::round((std::max(l_s, r_s) + s * std::min(l_s, r_s)) * 1e12), expected);
     }
   }
-  rows.push_back(make_row("CPU time 54 ns to 3.5 s, GPU 16.7 ms", "T = max + s min (whole ps)", "seconds as double", 0, ours,
-                          naive));
+  rows.push_back(make_row("CPU time 54 ns to 3.5 s, GPU 16.7 ms", "T = max + s min (whole ps)", "seconds as double", 0,
+                          ours, naive));
 }
 
 double budget_s(const char* planner, double logic_s, double target_s, double share) {
@@ -73,8 +73,8 @@ void add_printed_rule(std::vector<StabilityRow>& rows) {
                Exact(1 + 2 * l / rho).convert_to<double>());
     }
   }
-  rows.push_back(make_row("logic from 1e-9 of the target to all but that", "drawing time (Robin Hood eq. 5-7) / condition", "", 2,
-                          ours, none));
+  rows.push_back(make_row("logic from 1e-9 of the target to all but that",
+                          "drawing time (Robin Hood eq. 5-7) / condition", "", 2, ours, none));
 }
 
 }  // namespace

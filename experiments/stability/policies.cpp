@@ -52,7 +52,8 @@ void add_robin_hood(std::vector<StabilityRow>& rows) {
   const std::vector<double> values = falling_values();
   Exact sum = 0;
   for (const double v : values) sum += Exact(v);
-  const std::vector<double> suffix = shares_of("robin-hood", values), printed = shares_of("robin-hood:sums=printed", values);
+  const std::vector<double> suffix = shares_of("robin-hood", values),
+                            printed = shares_of("robin-hood:sums=printed", values);
   ErrorCollector ours, naive;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Exact expected = Exact(kBudget_s) * Exact(values[i]) / sum;
@@ -79,13 +80,14 @@ void add_values(std::vector<StabilityRow>& rows) {
         add(InstanceValue::equation8, a / sqrt(held), area * kImportance / std::sqrt(z));
         add(InstanceValue::equation9, a / held, area * kImportance / z);
         add(InstanceValue::equation10, a / (held * held), area * kImportance / (z * z));
-        add(InstanceValue::equation11, sqrt(Exact(area)) / held * Exact(kImportance), std::sqrt(area / (z * z)) * kImportance);
+        add(InstanceValue::equation11, sqrt(Exact(area)) / held * Exact(kImportance),
+            std::sqrt(area / (z * z)) * kImportance);
       }
     }
   }
   // Three roundings at most, none of which another one amplifies.
-  rows.push_back(make_row("depth and distance from behind the camera to 1e150 m", "value (Robin Hood eq. 8-11, held at near)",
-                          "as printed", 1.5, ours, printed));
+  rows.push_back(make_row("depth and distance from behind the camera to 1e150 m",
+                          "value (Robin Hood eq. 8-11, held at near)", "as printed", 1.5, ours, printed));
 }
 
 void add_contributions(std::vector<StabilityRow>& rows) {
@@ -102,8 +104,8 @@ void add_contributions(std::vector<StabilityRow>& rows) {
     }
   }
   // One quotient; halving is exact.
-  rows.push_back(make_row("levels 0 to 60, sizes 1e-250 to 1e300 m", "contribution (SRGGE), halved", "d / (2^L D)", 0.5, ours,
-                          naive));
+  rows.push_back(make_row("levels 0 to 60, sizes 1e-250 to 1e300 m", "contribution (SRGGE), halved", "d / (2^L D)", 0.5,
+                          ours, naive));
 }
 
 }  // namespace

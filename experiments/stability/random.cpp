@@ -34,7 +34,8 @@ Exact quantile_of_tail(const Exact& p, double computed) {
 // Abramowitz and Stegun 1964, 26.2.23: the usual short approximation.
 double short_quantile(double p) {
   const double t = std::sqrt(-2 * std::log(std::min(p, 1 - p)));
-  const double y = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double y =
+      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
   return p < 0.5 ? -y : y;
 }
 
@@ -66,8 +67,8 @@ void add_normal(std::vector<StabilityRow>& rows) {
   }
   // Wichura states 1e-16 for the approximation, 0.5 eps. In double: two polynomials of degree 7 with terms of one sign, 7.5
   // eps each with their rounded coefficients; quotient and product, 1 eps; their argument by log and root, 1.5 eps.
-  rows.push_back(make_row("probabilities 2^-54 to 1 - 2^-53", "normal quantile (AS 241)", "26.2.23 of Abramowitz and Stegun", 18,
-                          ours, naive));
+  rows.push_back(make_row("probabilities 2^-54 to 1 - 2^-53", "normal quantile (AS 241)",
+                          "26.2.23 of Abramowitz and Stegun", 18, ours, naive));
 }
 
 struct Words {
@@ -77,7 +78,8 @@ struct Words {
 // Both ends of both words, powers of two, and what a multiplicative sequence gives.
 Words words() {
   Words all;
-  std::vector<std::uint32_t> ends = {0, 1, 2, 3, 0x7fffffff, 0x80000000, 0x80000001, 0xc0000000, 0xfffffffe, 0xffffffff};
+  std::vector<std::uint32_t> ends = {0,          1,          2,          3,          0x7fffffff,
+                                     0x80000000, 0x80000001, 0xc0000000, 0xfffffffe, 0xffffffff};
   for (const std::uint32_t r : ends) {
     for (const std::uint32_t a : ends) {
       all.radius.push_back(r);
@@ -98,9 +100,11 @@ struct Pair {
 Pair exact_factors(std::uint32_t r, std::uint32_t a, double sigma) {
   const Exact u = (Exact(r >> 1) + Exact(0.5)) / Exact(0x1p31);
   const Exact radius = sqrt(Exact(-2 * log(u)));
-  const Exact angle = Exact(static_cast<std::int32_t>(a << 1)) / Exact(0x1p31) * boost::math::constants::half_pi<Exact>();
+  const Exact angle =
+      Exact(static_cast<std::int32_t>(a << 1)) / Exact(0x1p31) * boost::math::constants::half_pi<Exact>();
   const Exact mirror = (a >> 31) != 0 ? -1 : 1, s = sigma;
-  return {radius, exp(Exact(s * radius * mirror * cos(angle) - s * s / 2)), exp(Exact(s * radius * sin(angle) - s * s / 2))};
+  return {radius, exp(Exact(s * radius * mirror * cos(angle) - s * s / 2)),
+          exp(Exact(s * radius * sin(angle) - s * s / 2))};
 }
 
 // The bound is log_normal.h's for a radius of 0.1 or more; shorter ones are 1 in 200 draws.

@@ -7,7 +7,9 @@
 namespace framesim {
 namespace {
 
-std::string show(const Accuracy& a) { return fmt::format("Max = {:.3g} eps (Mean = {:.3g} eps)", a.max_eps, a.mean_eps); }
+std::string show(const Accuracy& a) {
+  return fmt::format("Max = {:.3g} eps (Mean = {:.3g} eps)", a.max_eps, a.mean_eps);
+}
 
 std::string cell(const StabilityRow& row, std::string_view line_break) {
   std::string text = show(row.ours);

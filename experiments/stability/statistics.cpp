@@ -1,10 +1,11 @@
 // Statistics of frame times that hardly differ.
+#include "sim/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "experiments/stability/accuracy.h"
 #include "sim/metrics.h"
-#include "sim/statistics.h"
 #include "sim/units.h"
 
 namespace framesim {

@@ -14,7 +14,8 @@ class LimitCheck {
   explicit LimitCheck(const ImportedScene& scene) : scene_(scene) {}
 
   void check() const {
-    if (scene_.types.size() > kMostTypes) refuse(fmt::format("{} types; a scene has up to {}", scene_.types.size(), kMostTypes));
+    if (scene_.types.size() > kMostTypes)
+      refuse(fmt::format("{} types; a scene has up to {}", scene_.types.size(), kMostTypes));
     for (const ImportedType& type : scene_.types) check_type(type);
     for (const ImportedInstance& one : scene_.instances) {
       check_coordinates(scene_, "an instance at", one.centre);
@@ -40,7 +41,8 @@ class LimitCheck {
     check("an area", type.area_m2, kArea);
     check("a number of levels", static_cast<double>(type.levels.size()), {1, kMostLevels});
     for (const ImportedFacts& facts : type.levels) {
-      for (const double count : {facts.polygons, facts.vertices, facts.lines, facts.points}) check("a level", count, kCounts);
+      for (const double count : {facts.polygons, facts.vertices, facts.lines, facts.points})
+        check("a level", count, kCounts);
       check("draw calls", facts.draws, kDraws);
     }
   }

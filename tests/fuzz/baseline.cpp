@@ -1,5 +1,6 @@
 // Tables of an earlier comparison that a new one is set beside.
 #include "experiments/statistics/baseline.h"
+
 #include "tests/fuzz/fuzz.h"
 
 using namespace framesim;

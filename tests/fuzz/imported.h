@@ -49,7 +49,8 @@ inline void import_input(std::string_view input, ImportScene import) {
   require(scene.instances.size() <= input.size(), "instances within the input's size");
   SceneFiles written;
   if (!accepts([&] { written = write_scene(scene, "fuzz"); })) return;
-  const std::string folder = std::filesystem::path(as_file(written.instances, written.instances_name.c_str())).parent_path();
+  const std::string folder =
+      std::filesystem::path(as_file(written.instances, written.instances_name.c_str())).parent_path();
   if (!written.camera.empty()) as_file(written.camera, written.camera_name.c_str());
   parse_scene(written.scene, folder + "/fuzz.toml", folder);  // a refusal ends the program
 }

@@ -54,5 +54,5 @@ command -v ccache >/dev/null && options="$options -DCMAKE_CXX_COMPILER_LAUNCHER=
 # shellcheck disable=SC2086
 cmake -S . -B "$build" $options -DCMAKE_CXX_COMPILER="${FRAMESIM_CLANG:-clang++}" -DCMAKE_BUILD_TYPE=Release \
   -DFRAMESIM_FUZZ=ON -DFRAMESIM_TESTS=OFF -DFRAMESIM_BENCHMARKS=OFF >/dev/null
-cmake --build "$build" --target fuzz --parallel >&2
+cmake --build "$build" --target fuzz --parallel "$(nproc)" >&2
 printf '%s\n' "$@" | xargs -n 1 -P "$(nproc)" sh tests/fuzz/run.sh --one "$seconds" || exit 1

@@ -27,9 +27,9 @@ std::string refusal_of(const std::string& rest) {
 TEST_CASE("sweep: [[vary]] tables that multiply to more than a million are refused before they are made") {
   // 1000 * 1001 > 10^6. With one more table it would be 10^9 lists.
   const std::string effects = "effects = [\"jitter:sigma=0.1\", \"logic-spikes\"]\n";
-  const std::string message = refusal_of(effects + vary("effect", "jitter", "sigma", 1000) +
-                                         vary("effect", "logic-spikes", "rate", 1001) +
-                                         vary("effect", "logic-spikes", "factor", 1000));
+  const std::string message =
+      refusal_of(effects + vary("effect", "jitter", "sigma", 1000) + vary("effect", "logic-spikes", "rate", 1001) +
+                 vary("effect", "logic-spikes", "factor", 1000));
   CAPTURE(message);
   CHECK(message.find("sweep.toml:10:1: the sweep has more than 1000000 runs") != std::string::npos);
 }
