@@ -74,6 +74,12 @@ browser() {
   sh tests/report/run.sh build/framesim
 }
 
+# One table of all builds; exit code 1 if their numbers differ.
+all_builds() {
+  build/framesim stability --format html --merge "$out/accuracy-g++.csv" "$out/accuracy-clang.csv" "$out/accuracy-O0.csv" \
+    >"$out/accuracy.html"
+}
+
 same() { cmp "$1" "$2"; }
 
 # all_tests FOLDER: every test case of FOLDER/framesim_tests, dealt to one process for each processor. Each process
@@ -102,7 +108,7 @@ sanitized_tests() {
 }
 
 packages=$BUILD_PACKAGES
-[ "$quick" = yes ] || packages="$packages clang libbenchmark-dev coinor-libcbc-dev"
+[ "$quick" = yes ] || packages="$packages clang libclang-rt-14-dev libbenchmark-dev coinor-libcbc-dev"
 # shellcheck disable=SC2086
 stage "packages" install_packages $packages
 [ "$failed" -eq 0 ] || finish
@@ -131,11 +137,13 @@ stage "g++ and clang++: same bytes" same "$out/jobs-2.csv" "$out/clang.csv"
 stage "accuracy tables, clang++" accuracy build-clang/framesim "$out/accuracy-clang.csv"
 stage "accuracy with g++ and clang++: same bytes" same "$out/accuracy-g++.csv" "$out/accuracy-clang.csv"
 
+stage "fuzzing, 4 s a target" sh tests/fuzz/run.sh 4
 stage "build with sanitizers, -O0" build_framesim build-sanitize all -DCMAKE_BUILD_TYPE=Debug -DFRAMESIM_SANITIZE=ON \
   -DFRAMESIM_BENCHMARKS=OFF
 stage "tests with sanitizers" sanitized_tests
 stage "accuracy tables, -O0 with sanitizers" accuracy build-sanitize/framesim "$out/accuracy-O0.csv"
 stage "accuracy with -O0 and -O2: same bytes" same "$out/accuracy-g++.csv" "$out/accuracy-O0.csv"
+stage "accuracy of all builds in one table" all_builds
 stage "small comparison, -O2" small build/framesim "$out/small-O2.csv"
 stage "small comparison, -O0 with sanitizers" small build-sanitize/framesim "$out/small-O0.csv"
 stage "-O0 and -O2: same bytes" same "$out/small-O2.csv" "$out/small-O0.csv"

@@ -50,7 +50,8 @@ Scene spheres(const std::vector<std::pair<glm::dvec3, double>>& spheres, const g
 
 Workload seen(const Scene& scene) {
   Workload w;
-  make_workload_source(scene)->fill(0, {}, w);
+  const auto source = make_workload_source(scene);  // its types are what the workload looks at
+  source->fill(0, {}, w);
   score(w);
   return w;
 }

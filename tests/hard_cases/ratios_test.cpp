@@ -28,12 +28,13 @@ double best_of(const char* policy, const TestWorkload& w, double budget_s) {
 // the clock's resolution, at least, and a finite one.
 TEST_CASE("ratios: no estimator ever prices a level at 0") {
   MachineProfile free{.name = "free", .source = "made up: everything costs nothing"};
+  const Machine machine(free);
   SceneFacts scene{.name = "free", .types = {}, .instances = 3, .frames = 1, .screen_px = 1e6};
   scene.types.push_back({.name = "nothing", .levels = {{.polygons = 5}, {.polygons = 50}, {.stated_cost_s = 0.0}}});
   for (const EstimatorEntry& entry : estimators()) {
     CAPTURE(entry.name);
     const auto estimator = entry.make({});
-    estimator->prepare(Machine(free), {}, scene);
+    estimator->prepare(machine, {}, scene);
     for (const Facts& facts : scene.types[0].levels) {
       for (const double area_px : {0.0, 1.0, 1e6}) CHECK(estimator->cost_s(facts, area_px) == kSmallestCostS);
       CHECK(estimator->setup_s(facts) >= 0);

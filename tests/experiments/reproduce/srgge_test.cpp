@@ -15,7 +15,8 @@ TEST_CASE("reproduce srgge: the repaired rule holds the budget, the printed one 
     CHECK(verdict(held) == Verdict::inside);
     CHECK(held.simulated > 90);
     const ReproducedRow& printed = find_row(document, budget + ", as printed, from the coarsest", mean);
-    CHECK(printed.simulated < find_row(document, budget + ", repaired", mean).simulated - 20);
+    // Over the whole path 61 against 98 % of the smallest budget, in the first 60 frames 79 against 99.
+    CHECK(printed.simulated < find_row(document, budget + ", repaired", mean).simulated - (kSlowBuild ? 15 : 30));
     CHECK(find_row(document, budget + ", as printed, from the coarsest", "nearer half of the statues at the coarsest")
               .simulated > 80);
   }
