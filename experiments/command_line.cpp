@@ -100,7 +100,8 @@ int parse_and_run(int argc, char** argv) {
       "  framesim run street --policy robin-hood --target 25ms\n"
       "  framesim explain street --policy robin-hood\n"
       "  framesim list policies\n"
-      "Exit codes: 0 done, 1 check found a difference, compare a regression, or stability a row outside its bound, 2 wrong\n"
+      "Exit codes: 0 done, 1 check found a difference, compare a regression, or stability a row outside its bound, 2 "
+      "wrong\n"
       "command line, 3 wrong input file, 4 internal error.");
   try {
     app.parse(argc, argv);

@@ -55,9 +55,10 @@ void add_comparison_options(CLI::App& app, ComparisonOptions& options) {
                  "(default: the first of each scene's list)")
       ->type_name("LIST")
       ->allow_extra_args(false);
-  app.add_option("--yardstick", options.yardstick,
-                 "What each run is set beside: none; bound: the upper bound on every frame's benefit; least: also the least "
-                 "error that scene and target allow; parts: also what estimator, planner and selection each add to it")
+  app.add_option(
+         "--yardstick", options.yardstick,
+         "What each run is set beside: none; bound: the upper bound on every frame's benefit; least: also the least "
+         "error that scene and target allow; parts: also what estimator, planner and selection each add to it")
       ->type_name("NAME")
       ->capture_default_str();
   add_shared_options(app, options.shared);

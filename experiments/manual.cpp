@@ -95,11 +95,14 @@ bool takes_scene(const CLI::App& verb) {
   return std::any_of(options.begin(), options.end(), [](const CLI::Option* o) { return o->get_name(true) == "SCENE"; });
 }
 
-std::vector<const CLI::App*> verbs_of(const CLI::App& app) { return app.get_subcommands([](const CLI::App*) { return true; }); }
+std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
 
 std::string bash_script(const CLI::App& app) {
-  std::string text = "_framesim() {\n  local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]} verb=${COMP_WORDS[1]}\n"
-                     "  COMPREPLY=()\n  case $last in\n";
+  std::string text =
+      "_framesim() {\n  local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]} verb=${COMP_WORDS[1]}\n"
+      "  COMPREPLY=()\n  case $last in\n";
   for (const Words& words : value_words()) {
     if (words.option == "SCENE") continue;
     text += fmt::format("    --{}) COMPREPLY=($(compgen -W '{}' -- \"$word\")); return ;;\n", words.option,
@@ -107,15 +110,17 @@ std::string bash_script(const CLI::App& app) {
   }
   std::vector<std::string> verbs;
   for (const CLI::App* verb : verbs_of(app)) verbs.push_back(verb->get_name());
-  text += fmt::format("  esac\n  if [ \"$COMP_CWORD\" -eq 1 ]; then\n    COMPREPLY=($(compgen -W '{} {}' -- \"$word\"))\n"
-                      "    return\n  fi\n  case $verb in\n",
-                      fmt::join(verbs, " "), fmt::join(long_options(app), " "));
+  text += fmt::format(
+      "  esac\n  if [ \"$COMP_CWORD\" -eq 1 ]; then\n    COMPREPLY=($(compgen -W '{} {}' -- \"$word\"))\n"
+      "    return\n  fi\n  case $verb in\n",
+      fmt::join(verbs, " "), fmt::join(long_options(app), " "));
   for (const CLI::App* verb : verbs_of(app)) {
     std::vector<std::string> words = long_options(*verb);
     if (takes_scene(*verb)) {
       for (std::string& scene : names_of(built_in_scenes())) words.push_back(std::move(scene));
     }
-    text += fmt::format("    {}) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n", verb->get_name(), fmt::join(words, " "));
+    text += fmt::format("    {}) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n", verb->get_name(),
+                        fmt::join(words, " "));
   }
   return text + "  esac\n}\ncomplete -o default -F _framesim framesim\n";
 }
@@ -158,7 +163,8 @@ std::string fish_script(const CLI::App& app) {
 
 std::string manual_page(const CLI::App& app) {
   std::string text = fmt::format(
-      ".TH FRAMESIM 1 \"\" \"framesim {}\" \"User Commands\"\n.SH NAME\nframesim \\- simulate frames that have a time to "
+      ".TH FRAMESIM 1 \"\" \"framesim {}\" \"User Commands\"\n.SH NAME\nframesim \\- simulate frames that have a time "
+      "to "
       "meet, and compare policies that choose levels of detail\n.SH SYNOPSIS\n.B framesim\n.I verb\n[options]\n"
       ".SH DESCRIPTION\n{}\n.SH OPTIONS\n{}.SH VERBS\n",
       version(), roff(app.get_description()), options_text(app));

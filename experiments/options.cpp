@@ -156,10 +156,11 @@ void add_shared_options(CLI::App& app, SharedOptions& options) {
          "frame). One that is not exact says what it leaves out; see 'framesim explain'")
       ->type_name("NAME")
       ->capture_default_str();
-  app.add_option("--limit-instances", options.limit_instances,
-                 fmt::format("Refuse a scene of more than N instances (default {}), or with generators' grids of more than "
-                             "{} samples for each of them: a small file can ask for any memory",
-                             SceneLimits{}.instances, kSamplesPerInstance))
+  app.add_option(
+         "--limit-instances", options.limit_instances,
+         fmt::format("Refuse a scene of more than N instances (default {}), or with generators' grids of more than "
+                     "{} samples for each of them: a small file can ask for any memory",
+                     SceneLimits{}.instances, kSamplesPerInstance))
       ->type_name("N");
   app.add_flag("--allow-outside-paths", options.outside_paths,
                "Files that a scene file names may lie outside of its folder");

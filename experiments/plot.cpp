@@ -68,9 +68,12 @@ std::string curves(const Block& block) {
       if (holds(*block[i]) != holding) continue;
       // Six colours; the next six curves are dashed, then dotted.
       const std::size_t round = same_kind / 6;
-      script += fmt::format("$frames{} using 1:2 with lines lw {} dt {} lc rgb '{}' title {}, \\\n", i, holding ? 2 : 1.2,
-                            round == 0 ? 1 : round == 1 ? 4 : 3, color_of(holding, same_kind),
-                            gnuplot_string(legend(*block[i])));
+      script +=
+          fmt::format("$frames{} using 1:2 with lines lw {} dt {} lc rgb '{}' title {}, \\\n", i, holding ? 2 : 1.2,
+                      round == 0   ? 1
+                      : round == 1 ? 4
+                                   : 3,
+                      color_of(holding, same_kind), gnuplot_string(legend(*block[i])));
       ++same_kind;
     }
   }

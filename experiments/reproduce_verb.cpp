@@ -36,8 +36,8 @@ ReproduceFormat read_reproduce_format(const std::string& text) {
   for (std::size_t i = 0; i < std::size(kReproduceFormatNames); ++i) {
     if (kReproduceFormatNames[i] == text) return static_cast<ReproduceFormat>(i);
   }
-  throw UsageError(fmt::format("--format: {} is unknown; allowed: {}{}", framesim::quoted(text), list_of(kReproduceFormatNames),
-                               did_you_mean(text, kReproduceFormatNames)));
+  throw UsageError(fmt::format("--format: {} is unknown; allowed: {}{}", framesim::quoted(text),
+                               list_of(kReproduceFormatNames), did_you_mean(text, kReproduceFormatNames)));
 }
 
 // In `folder`, which exists. Tells on stderr what was written.
@@ -51,8 +51,8 @@ void reproduce_documents(const ReproduceOptions& options, const Session& session
   const ReproduceFormat format = read_reproduce_format(options.format);
   const std::vector<std::string_view> names = allowed_documents();
   if (std::find(names.begin(), names.end(), options.document) == names.end()) {
-    throw UsageError(fmt::format("there is no document {}; allowed: {}{}", framesim::quoted(options.document), list_of(names),
-                                 did_you_mean(options.document, names)));
+    throw UsageError(fmt::format("there is no document {}; allowed: {}{}", framesim::quoted(options.document),
+                                 list_of(names), did_you_mean(options.document, names)));
   }
   if (!options.plot_folder.empty()) {
     require_gnuplot();
@@ -83,7 +83,8 @@ void add_reproduce(CLI::App& app, Session& session) {
   add_jobs_option(*verb, options->jobs);
   add_quiet_option(*verb, session.quiet);
   verb->footer(
-      "Each row: what was published, what was simulated, the difference, whether that is within its target, and the same "
+      "Each row: what was published, what was simulated, the difference, whether that is within its target, and the "
+      "same "
       "scene under the policy certified.\n"
       "Examples:\n"
       "  framesim reproduce robin-hood\n"

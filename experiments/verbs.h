@@ -27,7 +27,7 @@ void add_sweep(CLI::App& app, Session& session);
 void add_merge(CLI::App& app, Session& session);
 void add_query(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
-void add_man(CLI::App& app);         // both read the finished app: add them last
+void add_man(CLI::App& app);  // both read the finished app: add them last
 void add_completion(CLI::App& app);
 
 }  // namespace framesim

@@ -42,8 +42,10 @@ inline constexpr std::int64_t kMostFrames = 1'000'000;
 // start, which is normally where the leg before it ended. With `frames` the last pose is exactly at the leg's end; with
 // `step` it is the last whole step. Throws InputError at `where` for fewer than two points, points that coincide, a path
 // through `look_at`, a turn by 0 or as the first leg, a step longer than the leg, more than kMostFrames poses in all.
-void append_leg(std::vector<Pose>& poses, const PolylineLeg& leg, const LegLength& length, const InputLocation& where = {});
-void append_leg(std::vector<Pose>& poses, const SplineLeg& leg, const LegLength& length, const InputLocation& where = {});
+void append_leg(std::vector<Pose>& poses, const PolylineLeg& leg, const LegLength& length,
+                const InputLocation& where = {});
+void append_leg(std::vector<Pose>& poses, const SplineLeg& leg, const LegLength& length,
+                const InputLocation& where = {});
 void append_leg(std::vector<Pose>& poses, const TurnLeg& leg, const LegLength& length, const InputLocation& where = {});
 
 // Pose looking from `eye` along `forward` (not 0), up as near to +y as it can be.

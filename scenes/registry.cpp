@@ -26,11 +26,17 @@ constexpr std::string_view kMachines[] = {
     "vgx320",         // Funkhouser and Sequin 1993
     "graphicon2005",  // Robin Hood 2005
     "computer1",      // Dong et al. 2015, the four devices
-    "computer2",     "iphone", "ipad",
+    "computer2",
+    "iphone",
+    "ipad",
     "vrvis2002",    // Zach et al. 2002
     "desktop2020",  // SRGGE 2020
     // Fitted to the papers' figures, for `framesim reproduce`.
-    "graphicon2005-fitted", "computer1-fitted", "computer2-fitted", "iphone-fitted", "ipad-fitted",
+    "graphicon2005-fitted",
+    "computer1-fitted",
+    "computer2-fitted",
+    "iphone-fitted",
+    "ipad-fitted",
 };
 
 // `file` as messages name it keeps its bytes here for good.

@@ -48,12 +48,12 @@ inline constexpr std::uint16_t kNoCell = 0xffff;
 // Instances as columns. In a scene with a tree the rows are its nodes in preorder (inner nodes too) and `subtree_end` is
 // filled; otherwise it is empty.
 struct Instances {
-  std::vector<glm::dvec3> centre;         // of the bounding sphere
-  std::vector<float> radius_m;            // of the bounding sphere, scale applied
-  std::vector<float> area_m2;             // un-projected, scale applied
+  std::vector<glm::dvec3> centre;  // of the bounding sphere
+  std::vector<float> radius_m;     // of the bounding sphere, scale applied
+  std::vector<float> area_m2;      // un-projected, scale applied
   std::vector<TypeId> type;
   std::vector<ItemKind> kind;
-  std::vector<std::uint16_t> cell;        // indoor scenes: the cell it stands in; else kNoCell. Empty if no cells
+  std::vector<std::uint16_t> cell;  // indoor scenes: the cell it stands in; else kNoCell. Empty if no cells
   std::vector<std::uint32_t> subtree_end;
   std::size_t size() const { return centre.size(); }
 };
@@ -70,8 +70,8 @@ struct Cell {
   Box box;
 };
 struct Portal {
-  std::uint16_t from = 0, to = 0;    // both ways
-  std::vector<glm::dvec3> corners;   // convex polygon, at least 3
+  std::uint16_t from = 0, to = 0;   // both ways
+  std::vector<glm::dvec3> corners;  // convex polygon, at least 3
 };
 
 // Tile museums: for each cell, the cells that a random sample of sight lines reached (SRGGE 2020, section 2).

@@ -15,9 +15,9 @@
 namespace framesim {
 
 // Limits on what is read; larger input is refused at once, before it is loaded.
-inline constexpr std::size_t kLargestSceneFile = 16u << 20;  // bytes
-inline constexpr std::size_t kLongestLine = 1u << 20;        // bytes in one line of a scene file or CSV
-inline constexpr std::size_t kLargestCsvFile = 1u << 30;     // bytes
+inline constexpr std::size_t kLargestSceneFile = 16u << 20;   // bytes
+inline constexpr std::size_t kLongestLine = 1u << 20;         // bytes in one line of a scene file or CSV
+inline constexpr std::size_t kLargestCsvFile = 1u << 30;      // bytes
 inline constexpr std::size_t kMostInstances = 1'000'000'000;  // that SceneLimits::instances may be raised to
 
 // A parameter that the scene file declares under [parameters], for `framesim list scenes`.
@@ -31,8 +31,8 @@ struct SceneDescription {
 
 // Reads and checks the scene in `text`, whose origin is called `file` in messages; relative CSV paths are taken from
 // `folder` ("" = no files allowed, for built-in scenes). `settings` set the scene's declared parameters.
-Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder, const Settings& settings = {},
-                  const SceneLimits& limits = {});
+Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder,
+                  const Settings& settings = {}, const SceneLimits& limits = {});
 SceneDescription describe_scene(std::string_view text, const std::string& file);
 
 // The same for a file on disk.

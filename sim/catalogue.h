@@ -17,7 +17,7 @@ namespace framesim {
 enum class Algorithm : std::uint8_t { flat, gouraud, textured, lines, points, splats };
 inline constexpr std::size_t kAlgorithmCount = 6;
 inline constexpr std::array<std::string_view, kAlgorithmCount> kAlgorithmNames = {"flat",  "gouraud", "textured",
-                                                                                 "lines", "points",  "splats"};
+                                                                                  "lines", "points",  "splats"};
 
 // Which formula scores a level (see benefit.h).
 enum class BenefitModel : std::uint8_t { funkhouser, zach_terrain, zach_trees };
@@ -25,15 +25,15 @@ inline constexpr std::array<std::string_view, 3> kBenefitModelNames = {"funkhous
 
 // The facts of one representation, drawn once. All counts are >= 0 and finite.
 struct Facts {
-  double polygons = 0;       // primitives: triangles, lines, points or splats
+  double polygons = 0;  // primitives: triangles, lines, points or splats
   double vertices = 0;
   double texture_bytes = 0;
-  double lines = 0;          // drawn beside the polygons, with the machine's cost of lines
-  double points = 0;         // ... and of points (Robin Hood 2005, section 6 mixes all three)
-  double draws = 1;          // draw calls that one command stands for (a group of 64 trees: 64)
-  double coverage = 1;       // share of the item's projected area that is rasterised, 0..1
-  double benefit_weight = 1; // model-specific factor: 2^(dmax-d) of a terrain patch, number of trees of a group
-  double resolution = 1;     // x of a level that stands in for a continuous representation; all counts are at x already
+  double lines = 0;           // drawn beside the polygons, with the machine's cost of lines
+  double points = 0;          // ... and of points (Robin Hood 2005, section 6 mixes all three)
+  double draws = 1;           // draw calls that one command stands for (a group of 64 trees: 64)
+  double coverage = 1;        // share of the item's projected area that is rasterised, 0..1
+  double benefit_weight = 1;  // model-specific factor: 2^(dmax-d) of a terrain patch, number of trees of a group
+  double resolution = 1;  // x of a level that stands in for a continuous representation; all counts are at x already
   Algorithm algorithm = Algorithm::gouraud;
   std::optional<double> stated_cost_s{};   // GPU time stated outright, instead of facts; > 0
   std::optional<double> stated_benefit{};  // benefit stated outright, instead of a model; >= 0
@@ -60,9 +60,10 @@ struct ObjectType {
   // Levels at x = 1/2^(n-1) .. 1/2, 1 that stand in for the curve where a policy handles discrete levels only.
   int stand_in_levels = 6;
   BenefitModel benefit = BenefitModel::funkhouser;
-  double importance = 1;   // 0..1: counts in the benefit where the effect semantics is declared, and in robin-hood's values
-  double radius_m = 1;     // bounding sphere of an instance of scale 1
-  double area_m2 = 1;      // un-projected area of an instance of scale 1
+  double importance =
+      1;  // 0..1: counts in the benefit where the effect semantics is declared, and in robin-hood's values
+  double radius_m = 1;  // bounding sphere of an instance of scale 1
+  double area_m2 = 1;   // un-projected area of an instance of scale 1
 };
 
 inline constexpr std::size_t kMostLevels = 255;

@@ -26,12 +26,12 @@ namespace framesim {
 
 // Where an effect acts, in the order of a frame.
 enum class Hook : std::uint16_t {
-  machine = 1,     // once, at load: the machine is another one
-  frame = 2,       // before a frame: its logic time, its vertical blanks
-  workload = 4,    // after the benefit model: what things are worth (perception)
-  commands = 8,    // after the machine has priced the drawn commands: whole columns, or further commands
-  outcome = 16,    // what policy and estimator are told of a frame
-  after = 32,      // after the frame: the effect's own state (heat)
+  machine = 1,   // once, at load: the machine is another one
+  frame = 2,     // before a frame: its logic time, its vertical blanks
+  workload = 4,  // after the benefit model: what things are worth (perception)
+  commands = 8,  // after the machine has priced the drawn commands: whole columns, or further commands
+  outcome = 16,  // what policy and estimator are told of a frame
+  after = 32,    // after the frame: the effect's own state (heat)
 };
 constexpr Hook operator|(Hook a, Hook b) { return static_cast<Hook>(static_cast<int>(a) | static_cast<int>(b)); }
 constexpr bool has(Hook set, Hook hook) { return (static_cast<int>(set) & static_cast<int>(hook)) != 0; }

@@ -52,10 +52,10 @@ struct FrameTimes {
   Picoseconds draw_time{0};   // E2[last] - max(S1[first], E2[last of previous frame])
   Picoseconds frame_time{0};  // shown[k] - shown[k-1]; for k = 0, shown - cpu_start
   Picoseconds latency{0};     // shown - cpu_start
-  Picoseconds bus_wait{0};    // per-primitive stage: waited for uploads and for the bus, summed over the frame's commands
-  Picoseconds preempted{0};   // GPU: held by another client, switches included, since the frame before was drawn
-  std::int64_t steps = 0;     // counted work: formulas (closed form), equations (recurrence) or events taken
-  CriticalTimes critical{};   // all 0 unless asked for
+  Picoseconds bus_wait{0};  // per-primitive stage: waited for uploads and for the bus, summed over the frame's commands
+  Picoseconds preempted{0};  // GPU: held by another client, switches included, since the frame before was drawn
+  std::int64_t steps = 0;    // counted work: formulas (closed form), equations (recurrence) or events taken
+  CriticalTimes critical{};  // all 0 unless asked for
 };
 
 enum class EngineKind : std::uint8_t { automatic, recurrence, events, closed_form };

@@ -15,7 +15,8 @@ namespace {
 
 void require_cost(const std::string& machine, const char* name, double value) {
   if (std::isfinite(value) && value >= 0 && value <= to_seconds(kLongestDuration)) return;
-  throw InputError({"machine " + machine}, fmt::format("{} is {}; allowed is a finite time from 0 to one day", name, value));
+  throw InputError({"machine " + machine},
+                   fmt::format("{} is {}; allowed is a finite time from 0 to one day", name, value));
 }
 
 // A share, not a time: files and fits have the same range.
@@ -43,7 +44,8 @@ void append(double submit_s, Machine::StageTimes times, std::uint32_t item, Comm
 }  // namespace
 
 Overlap parse_overlap(std::string_view text, const InputLocation& where) {
-  const std::string allowed = "allowed are staged, staged:N (1 to 4 frames in flight), serial, paper2005, max-plus-s:S (S in 0..1)";
+  const std::string allowed =
+      "allowed are staged, staged:N (1 to 4 frames in flight), serial, paper2005, max-plus-s:S (S in 0..1)";
   const auto refuse = [&] { throw InputError(where, fmt::format("'{}' is no overlap model; {}", text, allowed)); };
   const std::size_t colon = text.find(':');
   const std::string_view name = text.substr(0, colon);
@@ -72,20 +74,28 @@ Overlap parse_overlap(std::string_view text, const InputLocation& where) {
 
 std::string to_string(const Overlap& overlap) {
   switch (overlap.kind) {
-    case OverlapKind::staged: return fmt::format("staged:{}", overlap.frames_in_flight);
-    case OverlapKind::serial: return "serial";
-    case OverlapKind::paper2005: return "paper2005";
-    case OverlapKind::max_plus: return fmt::format("max-plus-s:{}", overlap.serial_share);
+    case OverlapKind::staged:
+      return fmt::format("staged:{}", overlap.frames_in_flight);
+    case OverlapKind::serial:
+      return "serial";
+    case OverlapKind::paper2005:
+      return "paper2005";
+    case OverlapKind::max_plus:
+      return fmt::format("max-plus-s:{}", overlap.serial_share);
   }
   return "?";
 }
 
 double serial_share(const Overlap& overlap) {
   switch (overlap.kind) {
-    case OverlapKind::serial: return 1;
-    case OverlapKind::paper2005: return 1.0 / 3;
-    case OverlapKind::max_plus: return overlap.serial_share;
-    case OverlapKind::staged: break;
+    case OverlapKind::serial:
+      return 1;
+    case OverlapKind::paper2005:
+      return 1.0 / 3;
+    case OverlapKind::max_plus:
+      return overlap.serial_share;
+    case OverlapKind::staged:
+      break;
   }
   FRAMESIM_CHECK(overlap.kind != OverlapKind::staged, "the staged overlap has no closed form; name one");
   return 0;

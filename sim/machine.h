@@ -90,7 +90,7 @@ struct CommandColumns {
   // which needs the bus too; at most primitive_ps, and at most one chunk.
   std::vector<std::int64_t> upload_ps, fetch_ps;
   std::vector<std::uint32_t> facts;  // with a bus only: what is drawn, as an index into Workload::facts
-  std::int64_t upload_bytes = 0;  // of this frame
+  std::int64_t upload_bytes = 0;     // of this frame
   void clear();
   std::size_t size() const { return submit_ps.size(); }
 };

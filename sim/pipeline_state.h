@@ -145,7 +145,7 @@ class PipelineState {
 
   GpuClientJobs client_;
   SimTime client_since_{0};  // the job of the client that has the GPU
-  bool shared_;  // there is a bus or a client
+  bool shared_;              // there is a bus or a client
   bool job_start_due_ = false;
   Picoseconds held_at_last_drawn_{0};
 };

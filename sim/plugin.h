@@ -47,7 +47,7 @@ struct PluginInfo {
 }  // namespace framesim
 
 // In a namespace of its own file: defines the symbol that a loader looks for.
-#define FRAMESIM_PLUGIN(plugin_name, ...)                                            \
+#define FRAMESIM_PLUGIN(plugin_name, ...)                                                       \
   extern "C" __attribute__((visibility("default"))) const framesim::PluginInfo framesim_plugin; \
-  const framesim::PluginInfo framesim_plugin = {.name = plugin_name,                 \
+  const framesim::PluginInfo framesim_plugin = {.name = plugin_name,                            \
                                                 .register_policies = [](framesim::AddPolicy add) { __VA_ARGS__; }};

@@ -21,13 +21,13 @@ inline constexpr std::int16_t kNotDrawn = -1;
 
 // What is drawn. One entry an item of the workload.
 struct Selection {
-  std::vector<std::int16_t> level;   // 0 (coarsest) .. levels-1, or kNotDrawn. Curves: 0 if drawn. Bundles: kNotDrawn
-  std::vector<double> resolution;    // curves: in (0,1] where drawn, 0 where not. Levels: share of the triangles drawn,
-                                     // 1 unless the policy draws a level in part (Robin Hood, section 5)
-  double planned_cost_s = 0;         // the policy's own sum of estimated costs
-  double planned_benefit = 0;        // ... and of benefits
-  std::optional<double> bound;       // upper bound on the benefit within the budget, where the policy proves one
-  std::int64_t operations = 0;       // counted work: see PolicyTraits::operation
+  std::vector<std::int16_t> level;  // 0 (coarsest) .. levels-1, or kNotDrawn. Curves: 0 if drawn. Bundles: kNotDrawn
+  std::vector<double> resolution;   // curves: in (0,1] where drawn, 0 where not. Levels: share of the triangles drawn,
+                                    // 1 unless the policy draws a level in part (Robin Hood, section 5)
+  double planned_cost_s = 0;        // the policy's own sum of estimated costs
+  double planned_benefit = 0;       // ... and of benefits
+  std::optional<double> bound;      // upper bound on the benefit within the budget, where the policy proves one
+  std::int64_t operations = 0;      // counted work: see PolicyTraits::operation
 
   // n entries, nothing drawn, counters zero. Allocates only while n grows beyond any earlier frame.
   void reset(std::size_t n);
@@ -46,8 +46,9 @@ struct PolicyTraits {
 // What is known before the first frame.
 struct PolicyScene {
   std::span<const ObjectType> types;
-  std::span<const double> complexity_s;  // a type: estimated cost of its finest level at one fixed area (Robin Hood, 5.1)
-  std::size_t instances = 0;             // ids are 0 .. instances-1
+  std::span<const double>
+      complexity_s;           // a type: estimated cost of its finest level at one fixed area (Robin Hood, 5.1)
+  std::size_t instances = 0;  // ids are 0 .. instances-1
   double screen_px = 0;
 };
 
@@ -63,8 +64,8 @@ struct FrameOutcome {
   std::int64_t frame = 0;
   double target_s = 0;
   double budget_s = 0;
-  double frame_time_s = 0;      // shown[k] - shown[k-1]
-  double draw_time_s = 0;       // GPU time of this frame's commands
+  double frame_time_s = 0;  // shown[k] - shown[k-1]
+  double draw_time_s = 0;   // GPU time of this frame's commands
   double planned_cost_s = 0;
   const Workload& workload;
   const Selection& selection;

@@ -44,7 +44,8 @@ double polynomial(const std::array<double, N>& c, double x) {
 
 // The seed is encrypted under the name rather than xor-ed with it: neighbouring seeds, or seeds that differ as two
 // names' hashes do, get unrelated keys.
-RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(first_64(philox(hash_of(name), seed, 0, 0))) {}
+RandomStream::RandomStream(std::uint64_t seed, std::string_view name)
+    : key_(first_64(philox(hash_of(name), seed, 0, 0))) {}
 
 std::array<std::uint32_t, 4> RandomStream::block(std::uint64_t frame, std::uint32_t index, std::uint32_t lane) const {
   return philox(key_, frame, index, lane);

@@ -81,17 +81,22 @@ void Simulation::see() {
 
 void Simulation::run(Stage stage) {
   switch (stage) {
-    case Stage::logic: return run_logic();
+    case Stage::logic:
+      return run_logic();
     case Stage::visibility:
-      record_.visibility_ps = ceil_picoseconds(static_cast<double>(record_.visibility_tests) *
-                                               parts_.machine.profile().visibility_test_s)
-                                  .count();
+      record_.visibility_ps =
+          ceil_picoseconds(static_cast<double>(record_.visibility_tests) * parts_.machine.profile().visibility_test_s)
+              .count();
       return;
-    case Stage::decide: return decide();
-    case Stage::submit: return submit();
+    case Stage::decide:
+      return decide();
+    case Stage::submit:
+      return submit();
     case Stage::primitive:
-    case Stage::pixel: return;  // priced with their commands, and timed together with them by the engine
-    case Stage::present: return show();
+    case Stage::pixel:
+      return;  // priced with their commands, and timed together with them by the engine
+    case Stage::present:
+      return show();
   }
 }
 
@@ -108,14 +113,14 @@ void Simulation::run_logic() {
 double Simulation::plan_budget(double decide_s) const {
   if (!config_.budgets_s.empty()) return config_.budgets_s[static_cast<std::size_t>(record_.frame)];
   const MachineProfile& machine = parts_.machine.profile();
-  return parts_.planner.budget_s(
-      {.target_s = config_.target_s,
-       .before_draw_s = parts_.estimator.logic_s(record_.visible) + to_seconds(Picoseconds(record_.visibility_ps)) +
-                        decide_s + machine.frame_setup_s,
-       .submit_s = machine.submit_s * static_cast<double>(record_.visible),
-       .clear_s = machine.clear_s,
-       .swap_s = machine.swap_s,
-       .overlap = machine.overlap});
+  return parts_.planner.budget_s({.target_s = config_.target_s,
+                                  .before_draw_s = parts_.estimator.logic_s(record_.visible) +
+                                                   to_seconds(Picoseconds(record_.visibility_ps)) + decide_s +
+                                                   machine.frame_setup_s,
+                                  .submit_s = machine.submit_s * static_cast<double>(record_.visible),
+                                  .clear_s = machine.clear_s,
+                                  .swap_s = machine.swap_s,
+                                  .overlap = machine.overlap});
 }
 
 void Simulation::decide() {

@@ -26,9 +26,10 @@ namespace framesim {
 struct SimulationConfig {
   double target_s = 0.025;
   EngineOptions engine;
-  bool bound = false;              // find each frame's upper bound on the benefit (bound.h); changes no other column
-  bool check_selections = false;   // find_fault() on every frame; a fault is an InternalError
-  std::span<const double> budgets_s{};  // where given, each frame's budget in place of the planner's; as long as the run
+  bool bound = false;             // find each frame's upper bound on the benefit (bound.h); changes no other column
+  bool check_selections = false;  // find_fault() on every frame; a fault is an InternalError
+  std::span<const double>
+      budgets_s{};                 // where given, each frame's budget in place of the planner's; as long as the run
   StepProfile* profile = nullptr;  // where given, the host's time in each part of a step is added up there
   std::function<std::unique_ptr<Engine>()> make_engine{};  // where given, makes the engine in place of `engine`
 };

@@ -10,15 +10,36 @@
 namespace framesim {
 
 // The parts of Simulation::step, in its order.
-enum class StepPart : std::uint8_t { see, estimate, benefit, effects, logic, decide, bound, commands, engine, record, tell };
+enum class StepPart : std::uint8_t {
+  see,
+  estimate,
+  benefit,
+  effects,
+  logic,
+  decide,
+  bound,
+  commands,
+  engine,
+  record,
+  tell
+};
 inline constexpr std::size_t kStepParts = 11;
-inline constexpr std::array<std::string_view, kStepParts> kStepPartNames = {
-    "visibility and workload", "cost estimate", "benefit", "effects", "logic", "decision", "bound", "commands", "engine", "records", "feedback"};
+inline constexpr std::array<std::string_view, kStepParts> kStepPartNames = {"visibility and workload",
+                                                                            "cost estimate",
+                                                                            "benefit",
+                                                                            "effects",
+                                                                            "logic",
+                                                                            "decision",
+                                                                            "bound",
+                                                                            "commands",
+                                                                            "engine",
+                                                                            "records",
+                                                                            "feedback"};
 
 struct StepProfile {
   std::int64_t frames = 0;
-  std::int64_t total_ns = 0;                        // of whole steps, by readings of their own
-  std::array<std::int64_t, kStepParts> part_ns{};   // their sum misses `total_ns` by what lies between the parts
+  std::int64_t total_ns = 0;                       // of whole steps, by readings of their own
+  std::array<std::int64_t, kStepParts> part_ns{};  // their sum misses `total_ns` by what lies between the parts
 };
 
 // Adds each part's time as it ends; does nothing without a profile.

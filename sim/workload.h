@@ -52,7 +52,7 @@ struct Workload {
   double screen_px = 0;  // pixels of the whole screen
 
   // One entry an item.
-  std::vector<InstanceId> id;              // ascending, unique
+  std::vector<InstanceId> id;  // ascending, unique
   std::vector<TypeId> type;
   std::vector<ItemKind> kind;
   std::vector<double> projected_area_px;   // of the bounding sphere, 0 (behind the camera) .. screen_px
@@ -120,13 +120,13 @@ struct VisibilityCounts {
 struct SceneFacts {
   std::string name;
   std::vector<ObjectType> types;
-  std::size_t instances = 0;      // ids are 0 .. instances-1
-  std::int64_t frames = 0;        // length of the camera path
+  std::size_t instances = 0;  // ids are 0 .. instances-1
+  std::int64_t frames = 0;    // length of the camera path
   double screen_px = 0;
-  double focal_px = 0;            // pixels from the eye to the screen; 0 = not known
-  double full_detail_facts = 0;   // polygons of the whole scene at its finest levels, for reports
-  bool single_level = false;      // whatever the request and the frame, no item has two levels to choose from
-  bool fixed_facts = false;       // whatever the request and the frame, all facts are static ones (Workload::static_facts)
+  double focal_px = 0;           // pixels from the eye to the screen; 0 = not known
+  double full_detail_facts = 0;  // polygons of the whole scene at its finest levels, for reports
+  bool single_level = false;     // whatever the request and the frame, no item has two levels to choose from
+  bool fixed_facts = false;  // whatever the request and the frame, all facts are static ones (Workload::static_facts)
 };
 
 // Fills the workload of any frame of a scene. Implemented in scenes/.

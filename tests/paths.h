@@ -4,7 +4,7 @@
 
 namespace framesim {
 
-extern const char* const kProgramPath;    // build/framesim
-extern const char* const kSourceFolder;   // the folder of this checkout
+extern const char* const kProgramPath;   // build/framesim
+extern const char* const kSourceFolder;  // the folder of this checkout
 
 }  // namespace framesim

@@ -100,8 +100,8 @@ class FrameReader {
 // Every capture names the application; no file of one's own need to.
 bool is_capture(const std::string& path) {
   const std::vector<std::string> header = header_of(path);
-  return !header.empty() && (header.front().starts_with("//") ||
-                             std::find(header.begin(), header.end(), "Application") != header.end());
+  return !header.empty() &&
+         (header.front().starts_with("//") || std::find(header.begin(), header.end(), "Application") != header.end());
 }
 
 // Frames of the capture's dominant swap chain that have all times that the capture has at all.
@@ -110,10 +110,11 @@ FrameRows read_captured(const std::string& path, int window) {
   FrameRows rows{.file = path, .rows = {}};
   const bool cpu = !capture.cpu_column.empty(), gpu = !capture.gpu_column.empty();
   if (!cpu || !gpu) {
-    throw InputError({path, 1}, fmt::format("this {} capture has no column of {}; a fit needs CPU work and GPU busy of each "
-                                            "frame, as PresentMon v2 and later have them",
-                                            kCaptureFamilyNames[static_cast<std::size_t>(capture.family)],
-                                            cpu ? "GPU busy" : "CPU work"));
+    throw InputError(
+        {path, 1},
+        fmt::format("this {} capture has no column of {}; a fit needs CPU work and GPU busy of each "
+                    "frame, as PresentMon v2 and later have them",
+                    kCaptureFamilyNames[static_cast<std::size_t>(capture.family)], cpu ? "GPU busy" : "CPU work"));
   }
   rows.has[0] = rows.has[1] = rows.has[2] = true;
   Windows windows(window, rows);

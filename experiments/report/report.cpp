@@ -67,7 +67,8 @@ Json mix_of(const RunResult& run) {
     std::int64_t all = 0;
     for (const std::int64_t sum : sums) all += sum;
     Json row = {begin};
-    for (const std::int64_t sum : sums) row.push_back(all > 0 ? static_cast<double>(sum) / static_cast<double>(all) : 0.0);
+    for (const std::int64_t sum : sums)
+      row.push_back(all > 0 ? static_cast<double>(sum) / static_cast<double>(all) : 0.0);
     rows.push_back(row);
   }
   return {{"rows", rows}};
@@ -86,7 +87,9 @@ std::vector<SummaryColumn> columns_with_values(std::span<const RunResult> runs) 
 }
 
 Json cells_of(const RunResult& run, std::span<const SummaryColumn> columns) {
-  Json cells = {text_cell(run.scene), text_cell(run.policy), {{"text", show_target(run.target_s)}, {"key", run.target_s}},
+  Json cells = {text_cell(run.scene),
+                text_cell(run.policy),
+                {{"text", show_target(run.target_s)}, {"key", run.target_s}},
                 {{"text", std::to_string(run.seed)}, {"key", run.seed}}};
   for (const SummaryColumn& column : columns) {
     cells.push_back({{"text", show_cell(column, run.summary)}, {"key", number(run.summary.*column.value)}});
@@ -158,9 +161,10 @@ Json view_of(const SceneView& view) {
   for (const SceneView::Frame& frame : view.frames) {
     Json items = Json::array();
     for (const SceneView::Item& item : frame.items) items.push_back({item.object, rounded(item.fineness)});
-    frames.push_back({{"frame", frame.frame},
-                      {"eye", {rounded(frame.eye_x_m), rounded(frame.eye_z_m), frame.heading_rad, frame.half_width_rad}},
-                      {"items", items}});
+    frames.push_back(
+        {{"frame", frame.frame},
+         {"eye", {rounded(frame.eye_x_m), rounded(frame.eye_z_m), frame.heading_rad, frame.half_width_rad}},
+         {"items", items}});
   }
   json["x"] = xs;
   json["z"] = zs;
@@ -172,7 +176,8 @@ Json view_of(const SceneView& view) {
 
 // In an HTML script element only "</" and "<!--" could end or change it; within JSON both stand in strings only.
 std::string for_script(std::string text) {
-  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) text.replace(at, 1, "\\u003c");
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+    text.replace(at, 1, "\\u003c");
   return text;
 }
 
@@ -198,7 +203,8 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 
 std::string report_page(const ReportInput& input) {
   if (report_library().empty()) {
-    throw InputError({"report"}, "this framesim was built without dygraphs (Debian's libjs-dygraphs), which draws the curves");
+    throw InputError({"report"},
+                     "this framesim was built without dygraphs (Debian's libjs-dygraphs), which draws the curves");
   }
   const std::vector<SummaryColumn> columns = columns_with_values(input.runs);
   const bool name_seed = several_seeds(input.runs);
@@ -212,12 +218,13 @@ std::string report_page(const ReportInput& input) {
   for (const SceneView& view : input.views) views.push_back(view_of(view));
   Json manifest = Json::array();
   for (const auto& [name, value] : input.manifest) manifest.push_back({name, value});
-  const Json data = {{"intro", fmt::format("{} runs, {} rows of frames; framesim {}", input.runs.size(), frames, version())},
-                     {"columns", headings(columns)},
-                     {"runs", runs},
-                     {"blocks", blocks_json(input.runs)},
-                     {"views", views},
-                     {"manifest", manifest}};
+  const Json data = {
+      {"intro", fmt::format("{} runs, {} rows of frames; framesim {}", input.runs.size(), frames, version())},
+      {"columns", headings(columns)},
+      {"runs", runs},
+      {"blocks", blocks_json(input.runs)},
+      {"views", views},
+      {"manifest", manifest}};
   const std::string css = fmt::format("{}{}", report_library_css(), report_css());
   return filled(report_html(), {{"@CSS@", css},
                                 {"@LIBRARY@", std::string(report_library())},

@@ -33,11 +33,12 @@ struct SceneView {
 
 // Runs it once more, which gives the same frames, and looks from above at up to `frames` of them, evenly spread. Shows at most
 // `objects` objects, every n-th.
-SceneView look_from_above(const RunSpec& spec, const Scene& scene, std::int64_t frames = 60, std::size_t objects = 3000);
+SceneView look_from_above(const RunSpec& spec, const Scene& scene, std::int64_t frames = 60,
+                          std::size_t objects = 3000);
 
 struct ReportInput {
-  std::span<const RunResult> runs;  // with or without records; a run without has no curves
-  std::vector<SceneView> views;     // may be empty
+  std::span<const RunResult> runs;                            // with or without records; a run without has no curves
+  std::vector<SceneView> views;                               // may be empty
   std::vector<std::pair<std::string, std::string>> manifest;  // what made the results: name, value
 };
 

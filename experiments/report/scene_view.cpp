@@ -10,8 +10,7 @@
 namespace framesim {
 namespace {
 
-SceneView::Frame seen(const Simulation& simulation, const Scene& scene, std::int64_t index,
-                      std::size_t step) {
+SceneView::Frame seen(const Simulation& simulation, const Scene& scene, std::int64_t index, std::size_t step) {
   const Pose& pose = scene.camera.poses[static_cast<std::size_t>(index)];
   const double aspect = static_cast<double>(scene.screen.width) / scene.screen.height;
   SceneView::Frame frame{.frame = index,
@@ -40,7 +39,9 @@ SceneView::Frame seen(const Simulation& simulation, const Scene& scene, std::int
 SceneView look_from_above(const RunSpec& spec, const Scene& scene, std::int64_t frames, std::size_t objects) {
   const std::size_t rows = scene.instances.size();
   const std::size_t step = std::max<std::size_t>(1, (rows + objects - 1) / objects);
-  SceneView view{.scene = to_string(spec.scene), .title = fmt::format("{}, under {}", scene.title, to_string(spec.policy)), .thinned = step > 1 ? step : 0};
+  SceneView view{.scene = to_string(spec.scene),
+                 .title = fmt::format("{}, under {}", scene.title, to_string(spec.policy)),
+                 .thinned = step > 1 ? step : 0};
   for (std::size_t row = 0; row < rows; row += step) {
     view.x_m.push_back(scene.instances.centre[row].x);
     view.z_m.push_back(scene.instances.centre[row].z);

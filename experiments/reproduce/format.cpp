@@ -30,7 +30,8 @@ std::string show_difference(const ReproducedRow& row) {
   if (!found) return "";
   if (std::isnan(*found)) return "NA";
   if (is_relative(row)) return fmt::format("{:+.1f} %", 100 * *found);
-  return fmt::format("{:+.3g}{}", row.unit == "s" ? *found * 1e3 : *found, row.unit == "%" ? " %" : shown_unit(row.unit));
+  return fmt::format("{:+.3g}{}", row.unit == "s" ? *found * 1e3 : *found,
+                     row.unit == "%" ? " %" : shown_unit(row.unit));
 }
 
 std::string show_goal(const ReproducedRow& row) {
@@ -67,9 +68,8 @@ Cells cells(const ReproducedRow& row) {
 }
 
 bool any_recalled(const Reproduction& part) {
-  return std::any_of(part.rows.begin(), part.rows.end(), [](const ReproducedRow& row) {
-    return row.published && row.mark == Mark::recalled;
-  });
+  return std::any_of(part.rows.begin(), part.rows.end(),
+                     [](const ReproducedRow& row) { return row.published && row.mark == Mark::recalled; });
 }
 
 std::string count(const Reproduction& part) {
@@ -78,9 +78,10 @@ std::string count(const Reproduction& part) {
     inside += verdict(row) == Verdict::inside;
     with_target += verdict(row) != Verdict::no_target;
   }
-  return fmt::format("{} of {} rows with a target are inside it; {} rows have none.{}", inside, with_target,
-                     part.rows.size() - with_target,
-                     any_recalled(part) ? " [M]: recalled, unconfirmed; a band and an order, not a golden number." : "");
+  return fmt::format(
+      "{} of {} rows with a target are inside it; {} rows have none.{}", inside, with_target,
+      part.rows.size() - with_target,
+      any_recalled(part) ? " [M]: recalled, unconfirmed; a band and an order, not a golden number." : "");
 }
 
 std::string markdown_row(std::span<const std::string> row) {
@@ -134,9 +135,9 @@ std::string number(const std::optional<double>& value) {
 }
 
 std::string csv(std::span<const Reproduction> parts) {
-  const std::vector<std::string> header = {"document",  "figure",     "row",    "quantity",      "unit",    "published",
-                                           "mark",      "simulated",  "difference", "difference_is", "target_is",
-                                           "target",    "verdict",    "certified"};
+  const std::vector<std::string> header = {"document",  "figure", "row",       "quantity",   "unit",
+                                           "published", "mark",   "simulated", "difference", "difference_is",
+                                           "target_is", "target", "verdict",   "certified"};
   constexpr std::string_view kKinds[] = {"relative", "absolute", "at-least", "at-most"};
   std::string out = csv_row(header);
   for (const Reproduction& part : parts) {
@@ -148,7 +149,9 @@ std::string csv(std::span<const Reproduction> parts) {
           row.quantity,
           row.unit,
           number(row.published),
-          !row.published ? "NA" : row.mark == Mark::recalled ? "unconfirmed" : "printed",
+          !row.published               ? "NA"
+          : row.mark == Mark::recalled ? "unconfirmed"
+                                       : "printed",
           number(row.simulated),
           number(difference(row)),
           is_relative(row) ? "relative" : "absolute",

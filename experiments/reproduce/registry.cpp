@@ -14,11 +14,7 @@ ReproducedDocument srgge_document();
 
 std::span<const ReproducedDocument> reproduced_documents() {
   static const std::vector<ReproducedDocument> kDocuments = {
-      robin_hood_document(),
-      dong_document(),
-      funkhouser_document(),
-      zach_document(),
-      srgge_document(),
+      robin_hood_document(), dong_document(), funkhouser_document(), zach_document(), srgge_document(),
   };
   return kDocuments;
 }

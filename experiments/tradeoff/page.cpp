@@ -142,8 +142,8 @@ std::string pictures(const WorkDiagram& diagram) {
   std::string text;
   for (const bool counted : {false, true}) {
     if (has_points(diagram, counted)) {
-      text += fmt::format("![{}, {}]({}-{}.svg)\n\n", diagram.title, counted ? "counted" : "measured time", diagram.name,
-                          counted ? "operations" : "time");
+      text += fmt::format("![{}, {}]({}-{}.svg)\n\n", diagram.title, counted ? "counted" : "measured time",
+                          diagram.name, counted ? "operations" : "time");
     } else {
       text += fmt::format("No picture over {}: no setting gave a point.\n\n", counted ? "counted work" : "time");
     }

@@ -47,7 +47,8 @@ Bracket BracketSearch::around(double multiplier, double width) const {
 bool BracketSearch::looks_cut(Found& found) const {
   const std::size_t stride = stride_for(columns_->size(), kPeek);
   if (stride < 4) return false;
-  const PassResult peek = pass_over_sample(*columns_, multiplier_ > 0 ? around(multiplier_, width_) : Bracket{0, 0}, stride);
+  const PassResult peek =
+      pass_over_sample(*columns_, multiplier_ > 0 ? around(multiplier_, width_) : Bracket{0, 0}, stride);
   found.looked_at += static_cast<std::int64_t>(peek.looked_at);
   const double whole = static_cast<double>(columns_->size()) / static_cast<double>(peek.looked_at);
   if (peek.high.cost_s * whole > (1 + kCut) * budget_s_) return true;

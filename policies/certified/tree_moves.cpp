@@ -41,8 +41,9 @@ void TreeSearch::curve_moves(std::size_t item) {
   for (const double to :
        {0.0, 0.5 * x, 0.75 * x, 0.9 * x, std::min(1.0, 1.3 * x), knee, 1.0 / 32, 1.0 / 16, 0.125, 0.25, 0.5, 1.0}) {
     if (to == x || to > 1) continue;
-    moves_.push_back({curve_cost_s(*workload_, item, to) - now_[item].cost_s, std::max(curve_value(item, x) - curve_value(item, to), 0.0),
-                      static_cast<std::uint32_t>(item), 0, to});
+    moves_.push_back({curve_cost_s(*workload_, item, to) - now_[item].cost_s,
+                      std::max(curve_value(item, x) - curve_value(item, to), 0.0), static_cast<std::uint32_t>(item), 0,
+                      to});
   }
 }
 
@@ -134,8 +135,7 @@ void TreeSearch::raise_one_curve() {
     if (now_[i].own >= 0 && workload_->kind[i] == ItemKind::levels) skip_to = end(i);
     if (workload_->kind[i] != ItemKind::curve || i < skip_to) continue;
     const double now_s = curve_cost_s(*workload_, i, now_[i].x);
-    const double x =
-        std::min(curve_resolution(*workload_, i, now_s + left_s * (1 - 1e-9)), ceiling(i, now_[i].x));
+    const double x = std::min(curve_resolution(*workload_, i, now_s + left_s * (1 - 1e-9)), ceiling(i, now_[i].x));
     const double gain = curve_benefit(*workload_, i, x) - curve_benefit(*workload_, i, now_[i].x);
     if (gain > most) most = gain, best = i, to = x;
   }

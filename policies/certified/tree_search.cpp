@@ -41,8 +41,7 @@ int TreeSearch::kept_rung(std::size_t item) const {
 double TreeSearch::curve_value(std::size_t item, double x) const {
   if (!(x > 0)) return 0;
   const double benefit = curve_benefit(*workload_, item, x);
-  const bool keeps =
-      !rules_.kept.empty() && rung_of(x, workload_->type_of(item).stand_in_levels) == rules_.kept[item];
+  const bool keeps = !rules_.kept.empty() && rung_of(x, workload_->type_of(item).stand_in_levels) == rules_.kept[item];
   return (keeps ? benefit * (1 + rules_.bonus) : benefit) - m_ * curve_cost_s(*workload_, item, x);
 }
 

@@ -149,8 +149,8 @@ void reserve_instances(Scene& scene, std::size_t more, const InputLocation& wher
 void check_samples(const Scene& scene, double count, std::string_view what, const InputLocation& where) {
   const auto most = static_cast<double>(scene.limits.instances) * static_cast<double>(kSamplesPerInstance);
   if (count <= most) return;
-  throw InputError(where, fmt::format("{:.0f} {}; allowed are {:.0f}, {} for each instance of --limit-instances N", count,
-                                      what, most, kSamplesPerInstance));
+  throw InputError(where, fmt::format("{:.0f} {}; allowed are {:.0f}, {} for each instance of --limit-instances N",
+                                      count, what, most, kSamplesPerInstance));
 }
 
 void begin_tree(Scene& scene) {

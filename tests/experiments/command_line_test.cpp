@@ -60,8 +60,8 @@ TEST_CASE("command line: --version") {
 TEST_CASE("command line: list prints each kind, its names and their parameters") {
   const ProgramRun all = run_program({"list"});
   CHECK(all.exit_code == 0);
-  for (const char* kind : {"scenes\n", "policies\n", "effects\n", "estimators\n", "machines\n", "planners\n",
-                           "generators\n"}) {
+  for (const char* kind :
+       {"scenes\n", "policies\n", "effects\n", "estimators\n", "machines\n", "planners\n", "generators\n"}) {
     CAPTURE(kind);
     CHECK(has(all.out, kind));
   }

@@ -1,9 +1,10 @@
+#include "experiments/manual.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "experiments/manual.h"
 #include "tests/catch.h"
 #include "tests/experiments/program.h"
 

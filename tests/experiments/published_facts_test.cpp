@@ -15,7 +15,8 @@ constexpr std::int64_t kFrames = 60;
 constexpr std::int64_t kFrames = 0;  // all
 #endif
 
-Summary summary(const std::string& scene_text, const std::string& policy, double target_s, std::int64_t frames = kFrames) {
+Summary summary(const std::string& scene_text, const std::string& policy, double target_s,
+                std::int64_t frames = kFrames) {
   RunSpec spec;
   spec.scene = parse_spec(scene_text);
   spec.policy = parse_spec(policy);

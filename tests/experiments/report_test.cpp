@@ -47,7 +47,8 @@ TEST_CASE("report: frame times and level shares arrive as they were") {
   if (report_library().empty()) return;  // a build without the chart library makes no page, which the next case tests
   std::vector<RunResult> runs = {one_run("a")};
   runs[0].records.resize(801);
-  for (FrameRecord& record : runs[0].records) record.frame_time_ps = 16'500'000'000, record.mix_none = 1, record.mix_finest = 3;
+  for (FrameRecord& record : runs[0].records)
+    record.frame_time_ps = 16'500'000'000, record.mix_none = 1, record.mix_finest = 3;
   const auto data = data_of(report_page({.runs = runs}));
   const auto& run = data["runs"][0];
   // 801 floats are 3204 bytes; base64 has four letters for each three of them.

@@ -121,7 +121,8 @@ TEST_CASE("scene input: a machine file that is wrong is refused the same way") {
 TEST_CASE("scene input: the limit on instances and the bounds of the folder are options of run, compare and explain") {
   const TestFolder folder, outside;
   outside.write("a.csv", "type,x,y,z\nhouse,0,2,-30\n");
-  const std::string csv = "../" + std::filesystem::path(outside.path("a.csv")).parent_path().filename().string() + "/a.csv";
+  const std::string csv =
+      "../" + std::filesystem::path(outside.path("a.csv")).parent_path().filename().string() + "/a.csv";
   const std::string named =
       folder.write("named.toml", street_with("[[generator]]", "[instances]\ncsv = '" + csv + "'\n[[generator]]"));
   const std::string many = folder.write("many.toml", street_with("step_x = 8", "step_x = 8\nrows = 500000000000"));

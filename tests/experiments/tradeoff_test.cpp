@@ -1,10 +1,11 @@
 // The three parts of `framesim tradeoff`, small: that each method gives a point where it must, and errors that can be told
 // beforehand.
+#include "experiments/tradeoff/tradeoff.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "experiments/tradeoff/tradeoff.h"
 #include "policies/registry.h"
 #include "tests/catch.h"
 
@@ -17,16 +18,16 @@ TradeoffScope street(std::int64_t frames) {
 }
 
 const WorkCurve& curve_of(const WorkPanel& panel, std::string_view method) {
-  const auto curve = std::find_if(panel.curves.begin(), panel.curves.end(),
-                                  [&](const WorkCurve& c) { return c.method == method; });
+  const auto curve =
+      std::find_if(panel.curves.begin(), panel.curves.end(), [&](const WorkCurve& c) { return c.method == method; });
   REQUIRE(curve != panel.curves.end());
   return *curve;
 }
 
 const WorkPoint& point_of(const WorkPanel& panel, std::string_view method, std::string_view setting) {
   const WorkCurve& curve = curve_of(panel, method);
-  const auto point = std::find_if(curve.points.begin(), curve.points.end(),
-                                  [&](const WorkPoint& p) { return p.setting == setting; });
+  const auto point =
+      std::find_if(curve.points.begin(), curve.points.end(), [&](const WorkPoint& p) { return p.setting == setting; });
   REQUIRE(point != curve.points.end());
   return *point;
 }
@@ -62,7 +63,8 @@ TEST_CASE("tradeoff, decision: every policy has a curve; the optimum is nearest 
   // optimum. Those that take curves as they are have more to choose from.
   const double least = point_of(panel, "exact", "").error_mean;
   for (const WorkCurve& curve : panel.curves) {
-    const WorkloadRequest request = find_entry("policy", policies(), parse_spec(curve.method)).make({})->traits().request;
+    const WorkloadRequest request =
+        find_entry("policy", policies(), parse_spec(curve.method)).make({})->traits().request;
     for (const WorkPoint& p : curve.points) {
       CAPTURE(curve.method, p.setting);
       if (p.failure.empty() && !request.curves && !request.hierarchy) CHECK(p.error_mean >= least - 1e-9);

@@ -1,7 +1,9 @@
 #include "sim/plugin.h"
 
 #if defined(BAD_name)
-FRAMESIM_PLUGIN("bad", add({.name = "static", .make = [](const framesim::Settings&) -> std::unique_ptr<framesim::Policy> { return nullptr; }}))
+FRAMESIM_PLUGIN("bad",
+                add({.name = "static",
+                     .make = [](const framesim::Settings&) -> std::unique_ptr<framesim::Policy> { return nullptr; }}))
 #else
 extern "C" const framesim::PluginInfo framesim_plugin;
 #if defined(BAD_interface)

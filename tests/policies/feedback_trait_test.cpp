@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tests/catch.h"
-#include "tests/seeds.h"
 #include "tests/policies/make_policy.h"
+#include "tests/seeds.h"
 
 using namespace framesim;
 using namespace framesim::testing;

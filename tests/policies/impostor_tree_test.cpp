@@ -2,9 +2,9 @@
 #include <vector>
 
 #include "tests/catch.h"
-#include "tests/seeds.h"
 #include "tests/policies/make_policy.h"
 #include "tests/policies/tree/trees.h"
+#include "tests/seeds.h"
 
 using namespace framesim;
 using namespace framesim::testing;

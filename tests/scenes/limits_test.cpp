@@ -63,7 +63,8 @@ std::int64_t bytes_to_refuse(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a scene file of 2 KB that asks for a million million instances takes memory by its own size only", "[limits]") {
+TEST_CASE("a scene file of 2 KB that asks for a million million instances takes memory by its own size only",
+          "[limits]") {
   for (const char* settings : {"kind = 'rows'\ntype = 'house'\ncolumns = 1000000\nrows = 1000000\n",
                                "kind = 'scatter'\ntypes = 'house'\ncount = 1000000000000\n",
                                "kind = 'terrain'\nside = 8388609\npatch = 32\n"}) {

@@ -457,7 +457,7 @@ TEST_CASE("a workload that was filled before is filled as a new one is") {
     REQUIRE(used.facts.size() == fresh.facts.size());
     for (const auto* column : {&used.cost_s, &used.benefit}) REQUIRE(column->size() == fresh.level_begin.back());
     for (const auto* column : {&used.curve_setup_s, &used.curve_knee}) REQUIRE(column->size() == fresh.size());
-    CHECK(counts.visible == std::count_if(fresh.kind.begin(), fresh.kind.end(),
-                                          [](ItemKind kind) { return kind != ItemKind::bundle; }));
+    CHECK(counts.visible ==
+          std::count_if(fresh.kind.begin(), fresh.kind.end(), [](ItemKind kind) { return kind != ItemKind::bundle; }));
   }
 }

@@ -174,7 +174,8 @@ TEST_CASE("an empty workload is priced without being touched") {
 // The default price() asks cost_s for every level; two-stage has one of its own. Items fewer than facts, and more.
 TEST_CASE("every estimator: price gives what cost_s says of each level, bit for bit") {
   const Machine machine(test_profile(0.3));
-  for (const char* name : {"oracle", "oracle:combine=sum", "two-stage", "two-stage:combine=sum", "table", "linear-feedback"}) {
+  for (const char* name :
+       {"oracle", "oracle:combine=sum", "two-stage", "two-stage:combine=sum", "table", "linear-feedback"}) {
     const auto estimator = make_estimator(name);
     const RandomStream random(4, "estimators");
     estimator->prepare(machine, kLogic, scene_of(random, RandomWorkload::kScreenPx));

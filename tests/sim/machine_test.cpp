@@ -11,8 +11,12 @@ namespace {
 
 MachineProfile round_numbers() {
   MachineProfile profile{.name = "round"};
-  profile.algorithm[static_cast<std::size_t>(Algorithm::gouraud)] = {
-      .draw_s = 1e-6, .polygon_s = 1e-7, .vertex_s = 1e-8, .texture_byte_s = 1e-9, .pixel_s = 1e-9, .pixel_nonlinearity = 0.5};
+  profile.algorithm[static_cast<std::size_t>(Algorithm::gouraud)] = {.draw_s = 1e-6,
+                                                                     .polygon_s = 1e-7,
+                                                                     .vertex_s = 1e-8,
+                                                                     .texture_byte_s = 1e-9,
+                                                                     .pixel_s = 1e-9,
+                                                                     .pixel_nonlinearity = 0.5};
   profile.algorithm[static_cast<std::size_t>(Algorithm::lines)].polygon_s = 5e-8;
   profile.algorithm[static_cast<std::size_t>(Algorithm::points)].polygon_s = 2e-8;
   profile.submit_s = 2e-6;
@@ -83,7 +87,8 @@ TEST_CASE("overlap models are read and written in the same words") {
   }
   CHECK(to_string(parse_overlap("staged")) == "staged:1");
   CHECK(parse_overlap("paper2005").serial_share == Approx(1.0 / 3));
-  for (const char* text : {"", "staged:0", "staged:5", "staged:1.5", "max-plus-s", "max-plus-s:2", "max-plus-s:nan", "serial:1"}) {
+  for (const char* text :
+       {"", "staged:0", "staged:5", "staged:1.5", "max-plus-s", "max-plus-s:2", "max-plus-s:nan", "serial:1"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_overlap(text), InputError);
   }

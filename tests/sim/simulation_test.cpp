@@ -13,7 +13,8 @@ class TwoObjects : public WorkloadSource {
   TwoObjects() {
     scene_.name = "two objects";
     ObjectType box{.name = "box"};
-    box.levels = {Facts{.polygons = 100, .algorithm = Algorithm::flat}, Facts{.polygons = 1000, .algorithm = Algorithm::flat}};
+    box.levels = {Facts{.polygons = 100, .algorithm = Algorithm::flat},
+                  Facts{.polygons = 1000, .algorithm = Algorithm::flat}};
     scene_.types = {box};
     scene_.instances = 2;
     scene_.frames = 3;
@@ -135,9 +136,9 @@ TEST_CASE("the critical path of a frame: its stages in order, with the time each
   run.simulation.step();
   const Simulation::CriticalPath path = run.simulation.critical_path();
   // As above: logic 560, visibility 3, decision 14, submission 100 of setup + 10, 1100, 20, 20.
-  const std::vector<std::pair<std::string, std::int64_t>> expected{{"logic", 560},      {"visibility", 3}, {"decide", 14},
-                                                                  {"submit", 110},     {"primitive", 1100}, {"pixel", 20},
-                                                                  {"present", 20}};
+  const std::vector<std::pair<std::string, std::int64_t>> expected{{"logic", 560},  {"visibility", 3},   {"decide", 14},
+                                                                   {"submit", 110}, {"primitive", 1100}, {"pixel", 20},
+                                                                   {"present", 20}};
   REQUIRE(path.steps.size() == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     CAPTURE(i);

@@ -50,10 +50,10 @@ auto make(std::string_view kind, std::span<const Entry> entries, const std::stri
 }
 
 struct Result {
-  double misses = 0;                                 // share of frames
-  double switches = 0, benefit = 0, ngap = 0;        // means over frames
-  double budget_s = 0;                               // of all frames
-  bool holds = false;                                // the 95th percentile is at most 1.10 times the target
+  double misses = 0;                           // share of frames
+  double switches = 0, benefit = 0, ngap = 0;  // means over frames
+  double budget_s = 0;                         // of all frames
+  bool holds = false;                          // the 95th percentile is at most 1.10 times the target
 };
 
 // `frames` 0: the path once.

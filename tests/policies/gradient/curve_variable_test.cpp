@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "tests/catch.h"
-#include "tests/seeds.h"
 #include "tests/policies/workloads.h"
+#include "tests/seeds.h"
 
 using namespace framesim;
 using namespace framesim::testing;
