@@ -131,6 +131,16 @@ std::int64_t frames_to_run(const RunSpec& spec, const Scene& scene) {
   return spec.frames > 0 ? std::min(spec.frames, path) : path;
 }
 
+SimulationParts simulation_parts(const Parts& parts, const Scene& scene) {
+  return {.scene = *parts.source,
+          .policy = *parts.policy,
+          .planner = *parts.planner,
+          .estimator = *parts.estimator,
+          .machine = *parts.machine,
+          .logic = scene.logic,
+          .effects = running(parts.effects)};
+}
+
 namespace {
 
 RunResult run_once(const RunSpec& spec, const Scene& scene, const std::function<void()>& on_frame,
@@ -139,20 +149,13 @@ RunResult run_once(const RunSpec& spec, const Scene& scene, const std::function<
   RunResult result = describe(spec, scene, parts);
   std::function<std::unique_ptr<Engine>()> maker;
   if (engine_maker) maker = [&] { return engine_maker(parts.machine->profile(), spec.engine); };
-  Simulation simulation({.scene = *parts.source,
-                         .policy = *parts.policy,
-                         .planner = *parts.planner,
-                         .estimator = *parts.estimator,
-                         .machine = *parts.machine,
-                         .logic = scene.logic,
-                         .effects = running(parts.effects)},
-                        {.target_s = spec.target_s,
-                         .engine = spec.engine,
-                         .bound = spec.bound,
-                         .check_selections = spec.verify,
-                         .budgets_s = budgets_s,
-                         .profile = spec.profile ? &result.profile : nullptr,
-                         .make_engine = std::move(maker)});
+  Simulation simulation(simulation_parts(parts, scene), {.target_s = spec.target_s,
+                                                         .engine = spec.engine,
+                                                         .bound = spec.bound,
+                                                         .check_selections = spec.verify,
+                                                         .budgets_s = budgets_s,
+                                                         .profile = spec.profile ? &result.profile : nullptr,
+                                                         .make_engine = std::move(maker)});
   const std::int64_t frames = frames_to_run(spec, scene);
   result.records.reserve(static_cast<std::size_t>(frames));
   for (std::int64_t frame = 0; frame < frames; ++frame) {

@@ -8,6 +8,7 @@
 #include "experiments/run.h"
 #include "experiments/run_effects.h"
 #include "sim/planner.h"
+#include "sim/simulation.h"
 
 namespace framesim {
 
@@ -28,6 +29,8 @@ Parts make_parts(const RunSpec& spec, const Scene& scene);
 MachineProfile resolve_machine(const RunSpec& spec, const Scene& scene);
 // Those of them that run.
 std::vector<Effect*> running(const std::vector<DeclaredEffect>& effects);
+// `parts` and `scene` must outlive the simulation.
+SimulationParts simulation_parts(const Parts& parts, const Scene& scene);
 // The names of all parts; no records.
 RunResult describe(const RunSpec& spec, const Scene& scene, const Parts& parts);
 

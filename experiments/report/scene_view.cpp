@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "experiments/report/report.h"
-#include "experiments/run_parts.h"
+#include "experiments/stepped_run.h"
 #include "sim/simulation.h"
 
 namespace framesim {
@@ -46,23 +46,13 @@ SceneView look_from_above(const RunSpec& spec, const Scene& scene, std::int64_t 
     view.x_m.push_back(scene.instances.centre[row].x);
     view.z_m.push_back(scene.instances.centre[row].z);
   }
-  Parts parts = make_parts(spec, scene);
-  Simulation simulation({.scene = *parts.source,
-                         .policy = *parts.policy,
-                         .planner = *parts.planner,
-                         .estimator = *parts.estimator,
-                         .machine = *parts.machine,
-                         .logic = scene.logic,
-                         .effects = running(parts.effects)},
-                        {.target_s = spec.target_s, .engine = spec.engine});
   const std::int64_t all = frames_to_run(spec, scene);
   const std::int64_t every = std::max<std::int64_t>(1, (all + frames - 1) / frames);
-  for (std::int64_t frame = 0; frame < all; ++frame) {
-    simulation.step();
-    const Pose& pose = scene.camera.poses[static_cast<std::size_t>(frame)];
+  run_stepped(spec, scene, [&](const Simulation& simulation, const FrameRecord& record) {
+    const Pose& pose = scene.camera.poses[static_cast<std::size_t>(record.frame)];
     view.path_m.emplace_back(pose.eye.x, pose.eye.z);
-    if (frame % every == 0) view.frames.push_back(seen(simulation, scene, frame, step));
-  }
+    if (record.frame % every == 0) view.frames.push_back(seen(simulation, scene, record.frame, step));
+  });
   return view;
 }
 

@@ -12,7 +12,7 @@
 #include "experiments/reproduce/documents.h"
 #include "experiments/reproduce/published.h"
 #include "experiments/reproduce/scene_runs.h"
-#include "experiments/reproduce/stepped_run.h"
+#include "experiments/stepped_run.h"
 #include "experiments/thread_pool.h"
 #include "policies/importance.h"
 #include "scenes/registry.h"

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "experiments/reproduce/robin_hood.h"
-#include "experiments/reproduce/stepped_run.h"
+#include "experiments/stepped_run.h"
 #include "experiments/thread_pool.h"
 #include "scenes/registry.h"
 

@@ -7,7 +7,7 @@
 #include "experiments/reproduce/published.h"
 #include "experiments/reproduce/robin_hood.h"
 #include "experiments/reproduce/scene_runs.h"
-#include "experiments/reproduce/stepped_run.h"
+#include "experiments/stepped_run.h"
 #include "scenes/registry.h"
 
 namespace framesim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "experiments/reproduce/scene_runs.h"
-#include "experiments/reproduce/stepped_run.h"
+#include "experiments/stepped_run.h"
 #include "experiments/thread_pool.h"
 #include "scenes/registry.h"
 #include "sim/statistics.h"

@@ -10,7 +10,7 @@
 #include "experiments/reproduce/frame_sums.h"
 #include "experiments/reproduce/pictures.h"
 #include "experiments/reproduce/scene_runs.h"
-#include "experiments/reproduce/stepped_run.h"
+#include "experiments/stepped_run.h"
 #include "experiments/thread_pool.h"
 #include "policies/level_rules.h"
 #include "scenes/registry.h"
