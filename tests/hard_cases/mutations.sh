@@ -17,14 +17,15 @@ trap 'rm -rf "$scratch"' EXIT INT TERM
 
 list() {
   cat <<'LIST'
-sim/statistics.cpp; s/squares_ += from_old_mean \* (x - mean_)/squares_ += from_old_mean * from_old_mean/; Welford keeps the deviation of steady frame times, the mean of squares loses it
+sim/statistics.cpp; s/squares_ += from_old_mean \* (x - running_mean_)/squares_ += from_old_mean * from_old_mean/; Welford keeps the deviation of steady frame times, the mean of squares loses it
 sim/closed_form.cpp; s/longer = std::max(t_l, t_r)/longer = t_l/; s = 1 is the sum, s = 0 the maximum, to the last picosecond of long durations
 sim/clock.cpp; s/FRAMESIM_CHECK(!overflow,/FRAMESIM_CHECK(true || !overflow,/; a clock that would pass its end is refused with the simulated time
 sim/estimators/least_squares.cpp; s/r\[k\]\[k\] < kDependent/r[k][k] <= 0/; least squares: a dependent column is left out, the first one carries the cost
 sim/estimators/least_squares.cpp; s/x\[worst\] >= 0/x[worst] >= -1e300/; least squares: a negative coefficient becomes 0 and the other is fitted again
 sim/planners/inverse.cpp; s/if (logic_s >= target_s) return 0;//; inverse planner: closed forms by hand
 policies/knapsack/hull_greedy.cpp; s/single.gain > gain_/single.gain > 1e300/; funkhouser: repaired reaches half of the optimum and its bound holds, on 2000 random cases
-policies/robin_hood.cpp; s/price_s += rest_s \/ suffix_\[k + 1\]/price_s += rest_s \/ suffix_[k]/; robin-hood: three instances by hand, the remainder passed on, simple to complex
+policies/robin_hood.cpp; s/price_s.add(rest_s \/ suffix_\[k + 1\])/price_s.add(rest_s \/ suffix_[k])/; robin-hood: three instances by hand, the remainder passed on, simple to complex
+policies/pid.cpp; s/if (!clamped_ || locked)/if (!clamped_)/; control: recovery after ten missed frames
 policies/shares/box_shares.cpp; s/if (share_s > box.high_s) over += share_s - box.high_s;//; box shares: a saturated box is removed and the rest solved again
 policies/gradient/curve_ascent.cpp; s/std::max(v.x, kFirstResolution)/v.x/; mixed-gradient: the first gradient step shares in proportion to benefit
 scenes/generators/place.cpp; s/size + more > most)/size + more > most + 1)/; the limit counts every way of making instances, and is the caller's to set
