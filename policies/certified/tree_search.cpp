@@ -56,14 +56,16 @@ double TreeSearch::ceiling(std::size_t item, double x) const {
 TreeSearch::Node TreeSearch::evaluate_curve(std::size_t item) const {
   Node node;
   node.x = best_resolution(*workload_, item, m_);
-  node.relaxed = curve_benefit(*workload_, item, node.x) - m_ * curve_cost_s(*workload_, item, node.x);
-  node.value = curve_value(item, node.x);
+  node.cost_s = curve_cost_s(*workload_, item, node.x);
+  node.value = node.relaxed = curve_benefit(*workload_, item, node.x) - m_ * node.cost_s;
   if (const int kept = kept_rung(item); kept >= 0) {
+    node.value = curve_value(item, node.x);
     const Rung rung = rung_at(*workload_, item, kept);
     const double x = best_resolution_within(*workload_, item, m_, rung.low, rung.high);
-    if (const double value = curve_value(item, x); value > node.value) node.x = x, node.value = value;
+    if (const double value = curve_value(item, x); value > node.value) {
+      node.x = x, node.value = value, node.cost_s = curve_cost_s(*workload_, item, x);
+    }
   }
-  node.cost_s = curve_cost_s(*workload_, item, node.x);
   node.drawn = node.x > 0;
   node.own = node.drawn ? 0 : -1;
   return node;
