@@ -14,20 +14,9 @@
 using namespace framesim;
 using framesim::test::make_frame;
 using framesim::test::PipelineFrame;
-using framesim::test::staged;
+using framesim::test::serial_engines;
 
 namespace {
-
-// The three engines of a machine that does one frame after the other, its stages without overlap.
-std::vector<std::unique_ptr<Engine>> serial_engines() {
-  std::vector<std::unique_ptr<Engine>> engines;
-  MachineProfile machine = staged(2, 2, 1);
-  engines.push_back(make_engine(machine, {.kind = EngineKind::recurrence}));
-  engines.push_back(make_engine(machine, {.kind = EngineKind::events}));
-  machine.overlap = {.kind = OverlapKind::serial, .serial_share = 1};
-  engines.push_back(make_engine(machine, {.kind = EngineKind::automatic}));
-  return engines;
-}
 
 // `commands` commands that take 1 ps in each stage of the GPU and none of the CPU, after `late` ps of logic.
 PipelineFrame picoseconds(std::size_t commands, std::int64_t late = 0) {

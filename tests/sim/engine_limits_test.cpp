@@ -10,6 +10,7 @@
 using namespace framesim;
 using framesim::test::make_frame;
 using framesim::test::PipelineFrame;
+using framesim::test::serial_engines;
 using framesim::test::staged;
 
 namespace {
@@ -27,22 +28,12 @@ std::string refusal(Engine& engine, const PipelineFrame& frame) {
   return "";
 }
 
-std::vector<std::unique_ptr<Engine>> all_engines() {
-  std::vector<std::unique_ptr<Engine>> engines;
-  MachineProfile machine = staged(2, 2, 1);
-  engines.push_back(make_engine(machine, {.kind = EngineKind::recurrence}));
-  engines.push_back(make_engine(machine, {.kind = EngineKind::events}));
-  machine.overlap = {.kind = OverlapKind::serial, .serial_share = 1};
-  engines.push_back(make_engine(machine, {.kind = EngineKind::automatic}));
-  return engines;
-}
-
 }  // namespace
 
 // A day is 8.64e16 ps; 2^63 ps are 106.75 days. Each frame takes a day, so the 107th would end beyond: it starts at day 106,
 // which is 9158400000000000000 ps.
 TEST_CASE("a clock that would pass its end is refused with the simulated time") {
-  for (const auto& engine : all_engines()) {
+  for (const auto& engine : serial_engines()) {
     const PipelineFrame frame = make_frame(kDay / 2, 0, {{kDay / 4, 0, kDay / 4}});
     for (int day = 1; day <= 106; ++day) REQUIRE(engine->run(frame.work()).shown.count() == day * kDay);
     const std::string message = refusal(*engine, frame);
@@ -64,7 +55,7 @@ TEST_CASE("the last picosecond of the clock can be used, the next cannot") {
       if (stage < 3) command[static_cast<std::size_t>(stage)] = length;
       return make_frame(stage == 4 ? length : 0, stage == 3 ? length : 0, {command, {0, 0, 0}});
     };
-    for (const auto& engine : all_engines()) {
+    for (const auto& engine : serial_engines()) {
       CHECK(engine->run(frame_of(kLastTime).work()).shown.count() == kLastTime);
       CHECK(refusal(*engine, frame_of(1)).find("2^63") != std::string::npos);
     }
@@ -72,7 +63,7 @@ TEST_CASE("the last picosecond of the clock can be used, the next cannot") {
 }
 
 TEST_CASE("a vertical blank beyond the end of the clock is refused") {
-  for (const auto& engine : all_engines()) {
+  for (const auto& engine : serial_engines()) {
     PipelineFrame frame = make_frame(kLastTime - 1, 0, {{0, 0, 0}});
     frame.vsync_period = 1'000'000;  // 2^63 - 2 is no multiple of a million, and the next one lies beyond 2^63
     CHECK(refusal(*engine, frame).find("2^63") != std::string::npos);
@@ -84,7 +75,7 @@ TEST_CASE("a negative duration and a frame without commands are refused") {
     CAPTURE(stage);
     std::array<std::int64_t, 3> command{5, 5, 5};
     command[stage] = -1;
-    for (const auto& engine : all_engines()) {
+    for (const auto& engine : serial_engines()) {
       CHECK(refusal(*engine, make_frame(0, 0, {{1, 1, 1}, command})).find("duration") != std::string::npos);
     }
   }

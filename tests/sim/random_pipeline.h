@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim/engine.h"
@@ -18,6 +19,17 @@ inline MachineProfile staged(int primitive_fifo, int pixel_fifo, int frames_in_f
   machine.pixel_fifo = pixel_fifo;
   machine.overlap.frames_in_flight = frames_in_flight;
   return machine;
+}
+
+// The three engines of a machine that does one frame after the other: recurrence, events, and the closed form of no overlap.
+inline std::vector<std::unique_ptr<Engine>> serial_engines() {
+  std::vector<std::unique_ptr<Engine>> engines;
+  MachineProfile machine = staged(2, 2, 1);
+  engines.push_back(make_engine(machine, {.kind = EngineKind::recurrence}));
+  engines.push_back(make_engine(machine, {.kind = EngineKind::events}));
+  machine.overlap = {.kind = OverlapKind::serial, .serial_share = 1};
+  engines.push_back(make_engine(machine, {.kind = EngineKind::automatic}));
+  return engines;
 }
 
 // SplitMix64 (Steele, Lea, Flood 2014): small, and the same on every platform.
