@@ -15,6 +15,7 @@ using namespace framesim;
 using framesim::test::make_frame;
 using framesim::test::PipelineFrame;
 using framesim::test::serial_engines;
+using framesim::test::staged;
 
 namespace {
 
