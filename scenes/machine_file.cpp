@@ -40,11 +40,12 @@ bool listed(const AlgorithmCosts& costs) {
 AlgorithmCosts read_costs(const TomlDocument& document, const TomlMember& member) {
   std::vector<std::string_view> keys;
   for (const CostField& field : kCosts) keys.push_back(field.key);
-  keys.push_back("pixel_nonlinearity");
+  keys.insert(keys.end(), {"pixel_nonlinearity", "area_exponent"});
   const TableReader table(document, member.node, fmt::format("[machine.algorithm.{}]", member.key), keys);
   AlgorithmCosts costs;
   for (const CostField& field : kCosts) costs.*field.member = table.duration_s(field.key, kDuration, 0.0);
-  costs.pixel_nonlinearity = table.number("pixel_nonlinearity", {0, 1e6}, 0.0);
+  costs.pixel_nonlinearity = table.number("pixel_nonlinearity", {0, kLargestPixelNonlinearity}, 0.0);
+  costs.area_exponent = table.number("area_exponent", {0, kLargestAreaExponent}, 0.0);
   if (!listed(costs)) throw InputError(table.where(), fmt::format("{} gives no cost above 0", table.name()));
   return costs;
 }

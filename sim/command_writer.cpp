@@ -67,8 +67,8 @@ void CommandWriter::write(const Machine& machine, const Workload& workload, cons
     if (bus) commands.facts[row] = workload.facts_begin[i] + static_cast<std::uint32_t>(level);
     if (const Level* const known = find(workload, i, level)) {
       const Machine::StageTimes times = known->costs.times(area_px, resolution);
-      const bool whole = resolution == 1;
-      put(known->submit_ps, whole ? known->primitive_ps : ceil_picoseconds(times.primitive_s).count(), times.pixel_s,
+      const bool same = resolution == 1 && !known->costs.primitives_depend_on_view();
+      put(known->submit_ps, same ? known->primitive_ps : ceil_picoseconds(times.primitive_s).count(), times.pixel_s,
           item);
     } else {
       const Machine::DrawTimes draw = machine.draw_times(workload, i, level, resolution);

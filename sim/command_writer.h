@@ -19,7 +19,7 @@ class CommandWriter {
   struct Level {
     Machine::LevelCosts costs;
     std::int64_t submit_ps = 0;
-    std::int64_t primitive_ps = 0;  // at resolution 1
+    std::int64_t primitive_ps = 0;  // at resolution 1, where it does not depend on the view
     bool known = false;             // false: longer than simulated time may be, which is only wrong if it is drawn
   };
   void prepare(const Machine& machine, const Workload& workload);

@@ -19,10 +19,10 @@ void require_cost(const std::string& machine, const char* name, double value) {
                    fmt::format("{} is {}; allowed is a finite time from 0 to one day", name, value));
 }
 
-// A share, not a time: files and fits have the same range.
-void require_nonlinearity(const std::string& machine, double value) {
-  if (value >= 0 && value <= 1e6) return;
-  throw InputError({"machine " + machine}, fmt::format("pixel_nonlinearity is {}; allowed is 0 to 1e6", value));
+// A number, not a time: files and fits have the same range.
+void require_number(const std::string& machine, const char* name, double value, double high) {
+  if (value >= 0 && value <= high) return;
+  throw InputError({"machine " + machine}, fmt::format("{} is {}; allowed is 0 to {}", name, value, high));
 }
 
 void require_fifo(const std::string& machine, const char* name, int value) {
@@ -121,7 +121,8 @@ Machine::Machine(MachineProfile profile) : profile_(std::move(profile)) {
     require_cost(p.name, "vertex", costs.vertex_s);
     require_cost(p.name, "texture_byte", costs.texture_byte_s);
     require_cost(p.name, "pixel", costs.pixel_s);
-    require_nonlinearity(p.name, costs.pixel_nonlinearity);
+    require_number(p.name, "pixel_nonlinearity", costs.pixel_nonlinearity, kLargestPixelNonlinearity);
+    require_number(p.name, "area_exponent", costs.area_exponent, kLargestAreaExponent);
   }
   require_cost(p.name, "submit", p.submit_s);
   require_cost(p.name, "submit_draw", p.submit_draw_s);
@@ -142,12 +143,13 @@ double draws_issued(const Facts& facts, double resolution, bool draws_scale_belo
 Machine::LevelCosts Machine::level_costs(const Facts& facts) const {
   if (facts.stated_cost_s) return {.primitives_s = *facts.stated_cost_s};
   const AlgorithmCosts& costs = costs_of(profile_, facts.algorithm);
-  const double primitives = costs.polygon_s * facts.polygons + costs.vertex_s * facts.vertices +
-                            costs.texture_byte_s * facts.texture_bytes +
-                            costs_of(profile_, Algorithm::lines).polygon_s * facts.lines +
-                            costs_of(profile_, Algorithm::points).polygon_s * facts.points;
+  const double own = costs.polygon_s * facts.polygons + costs.vertex_s * facts.vertices;
+  const double lines = costs_of(profile_, Algorithm::lines).polygon_s * facts.lines;
+  const double points = costs_of(profile_, Algorithm::points).polygon_s * facts.points;
   return {.draws_s = costs.draw_s * facts.draws,
-          .primitives_s = primitives,
+          .primitives_s = own + costs.texture_byte_s * facts.texture_bytes + lines + points,
+          .growing_s = own + lines + points,
+          .area_exponent = costs.area_exponent,
           .coverage = facts.coverage,
           .pixel_s = costs.pixel_s,
           .pixel_nonlinearity = costs.pixel_nonlinearity};

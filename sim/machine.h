@@ -2,7 +2,9 @@
 // Policies never see it; they see an estimator (estimator.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,16 +20,19 @@ namespace framesim {
 
 struct Selection;
 
-// Coefficients of one rendering algorithm. All in seconds, >= 0. MODEL: per-primitive stage
-// c_draw*draws + c_polygon*polygons + c_vertex*vertices + c_texture*bytes; per-pixel stage c_pixel*A*(1 + k*A/2^20), A the
-// covered area in pixels: Robin Hood (section 4.1) measured that time is not linear in projected area.
+// Coefficients of one rendering algorithm. Times in seconds, >= 0. MODEL: per-primitive stage
+// c_draw*draws + (c_polygon*polygons + c_vertex*vertices)*max(1,A)^e + c_texture*bytes; per-pixel stage
+// c_pixel*A*(1 + k*A/2^20), A the pixels that are covered. Lines and points cost c_polygon of their own algorithms, and
+// grow with A as what they are drawn with. Robin Hood (section 4.1) measured time(P,A,R) of one primitive, and that it is
+// not linear in the projected area: k says so of pixels, e of primitives.
 struct AlgorithmCosts {
   double draw_s = 0;
   double polygon_s = 0;
   double vertex_s = 0;
   double texture_byte_s = 0;
   double pixel_s = 0;
-  double pixel_nonlinearity = 0;  // k, >= 0; 0 = linear
+  double pixel_nonlinearity = 0;  // k, 0..1e6; 0 = linear
+  double area_exponent = 0;       // e, 0..1; 0 = a primitive takes as long whatever its draw covers
 };
 
 // How CPU and GPU overlap (MODEL section 2).
@@ -62,6 +67,8 @@ struct GpuClient {
   bool between_commands = false;  // true: waits until both stages have finished their commands; false: interrupts them
   std::optional<RandomStream> arrivals{};  // given: Poisson; the gap before job j is drawn at (0, j), lane 0
 };
+
+inline constexpr double kLargestPixelNonlinearity = 1e6, kLargestAreaExponent = 1;
 
 struct MachineProfile {
   std::string name;
@@ -114,8 +121,10 @@ class Machine {
   // gets the same bits; CPU time is submit_s().
   struct LevelCosts {
     double draws_s = 0;       // for all its draw calls
-    double primitives_s = 0;  // for all its primitives, at resolution 1
-    double coverage = 0, pixel_s = 0, pixel_nonlinearity = 0;
+    double primitives_s = 0;  // for all its primitives and their textures, at resolution 1, on one pixel
+    double growing_s = 0;     // the part of primitives_s that grows with the covered area
+    double area_exponent = 0, coverage = 0, pixel_s = 0, pixel_nonlinearity = 0;
+    bool primitives_depend_on_view() const { return area_exponent != 0 && growing_s > 0; }
     StageTimes times(double area_px, double resolution) const;
   };
   LevelCosts level_costs(const Facts& facts) const;
@@ -148,7 +157,11 @@ inline constexpr double kReferenceArea_px = 1 << 20;  // where the nonlinear ter
 
 inline Machine::StageTimes Machine::LevelCosts::times(double area_px, double resolution) const {
   const double pixels = coverage * area_px * resolution;
-  return {.primitive_s = draws_s + primitives_s * resolution,
+  double primitive_s = draws_s + primitives_s * resolution;
+  if (primitives_depend_on_view()) {
+    primitive_s += growing_s * resolution * (std::pow(std::max(1.0, pixels), area_exponent) - 1);
+  }
+  return {.primitive_s = primitive_s,
           .pixel_s = pixel_s * pixels * (1 + pixel_nonlinearity * pixels / kReferenceArea_px)};
 }
 

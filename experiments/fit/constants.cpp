@@ -23,9 +23,12 @@ constexpr std::array kConstants = {
     ConstantInfo{"texture_byte", CostSide::primitive, "texture_bytes", nullptr, &AlgorithmCosts::texture_byte_s},
     ConstantInfo{"clear", CostSide::pixel, "", &MachineProfile::clear_s},
     ConstantInfo{"pixel", CostSide::pixel, "pixels", nullptr, &AlgorithmCosts::pixel_s},
-    ConstantInfo{"pixel_nonlinearity", CostSide::pixel, "pixels_squared", nullptr, &AlgorithmCosts::pixel_nonlinearity},
+    ConstantInfo{"pixel_nonlinearity", CostSide::pixel, "pixels_squared", nullptr, &AlgorithmCosts::pixel_nonlinearity,
+                 kLargestPixelNonlinearity, true},
+    ConstantInfo{"area_exponent", CostSide::runs, "", nullptr, &AlgorithmCosts::area_exponent, kLargestAreaExponent,
+                 true},
     ConstantInfo{"swap", CostSide::swap, "", &MachineProfile::swap_s},
-    ConstantInfo{"overlap", CostSide::overlap, ""},
+    ConstantInfo{"overlap", CostSide::overlap, "", nullptr, nullptr, 1, true},
 };
 
 std::string algorithm_toml(std::string_view name, const AlgorithmCosts& costs) {
@@ -33,9 +36,8 @@ std::string algorithm_toml(std::string_view name, const AlgorithmCosts& costs) {
   for (const ConstantInfo& constant : kConstants) {
     if (!constant.of_algorithm || costs.*constant.of_algorithm == 0) continue;
     const double value = costs.*constant.of_algorithm;
-    text += constant.of_algorithm == &AlgorithmCosts::pixel_nonlinearity
-                ? fmt::format("{} = {}\n", constant.name, value)
-                : fmt::format("{} = \"{}\"\n", constant.name, format_duration(value));
+    text += constant.plain ? fmt::format("{} = {}\n", constant.name, value)
+                           : fmt::format("{} = \"{}\"\n", constant.name, format_duration(value));
   }
   const bool costs_time =
       costs.draw_s > 0 || costs.polygon_s > 0 || costs.vertex_s > 0 || costs.texture_byte_s > 0 || costs.pixel_s > 0;

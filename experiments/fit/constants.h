@@ -10,7 +10,8 @@
 
 namespace framesim {
 
-enum class CostSide : std::uint8_t { cpu, primitive, pixel, swap, overlap };
+// `runs`: what no count of a frame tells; only runs do.
+enum class CostSide : std::uint8_t { cpu, primitive, pixel, swap, overlap, runs };
 
 struct ConstantInfo {
   std::string_view name;
@@ -18,6 +19,8 @@ struct ConstantInfo {
   std::string_view column;  // what it multiplies in a measured row; empty: once a row
   double MachineProfile::*of_machine = nullptr;
   double AlgorithmCosts::*of_algorithm = nullptr;
+  double high = 86'400;  // the largest it may be: seconds, unless `plain`
+  bool plain = false;    // a number, not a time
 };
 std::span<const ConstantInfo> constant_infos();
 // Throws UsageError naming the legal ones.

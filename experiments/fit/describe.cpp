@@ -13,7 +13,7 @@
 namespace framesim {
 namespace {
 
-bool is_time(const std::string& name) { return name != "overlap" && name != "pixel_nonlinearity" && name != "jitter"; }
+bool is_time(const std::string& name) { return name != "jitter" && !constant_infos()[find_constant(name)].plain; }
 
 // Four digits that matter, with a unit.
 std::string show(const std::string& name, double value) {

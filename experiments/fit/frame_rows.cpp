@@ -61,6 +61,11 @@ class FrameModel {
       base_.push_back(has_column(rows, constant_infos()[c]) ? constant_of(request.machine, c) : 0);
     }
     choose_equations();
+    if (equations_.models_gpu && constant_of(request.machine, find_constant("area_exponent")) > 0) {
+      throw InputError({rows.file, 1}, fmt::format("machine '{}' has an area_exponent, and rows of frames do not tell "
+                                                   "what each draw covers: start from a machine without, or fit runs",
+                                                   request.machine.name));
+    }
     if (fits(CostSide::overlap) || request.machine.overlap.kind != OverlapKind::staged) return;
     if (equations_.frame && cpu_known() && gpu_known()) {
       throw InputError({rows.file, 1},
@@ -97,10 +102,9 @@ class FrameModel {
   // Where constant `c` starts: so that it alone would make up `share` of the mean of what is measured.
   FitConstant start(std::size_t c, double share) const {
     const ConstantInfo& info = constant_infos()[c];
-    FitConstant constant{.name = std::string(info.name), .start = 0, .low = 0, .high = 86'400, .scale = 1};
+    FitConstant constant{.name = std::string(info.name), .start = 0, .low = 0, .high = info.high, .scale = 1};
     if (info.side == CostSide::overlap) {
       constant.start = 1.0 / 3;
-      constant.high = 1;
       return constant;
     }
     Moments counts, times;
@@ -109,7 +113,6 @@ class FrameModel {
       times.add(measured(row, info.side));
     }
     if (info.of_algorithm == &AlgorithmCosts::pixel_nonlinearity) {
-      constant.high = 1e6;
       constant.scale = 0.1;
     } else {
       constant.scale = times.mean() / (counts.mean() > 0 ? counts.mean() : 1);
@@ -136,6 +139,9 @@ class FrameModel {
       const std::size_t c = find_constant(name);
       if (std::find(constants_.begin(), constants_.end(), c) != constants_.end()) {
         throw UsageError(fmt::format("--constants: '{}' is there twice", name));
+      }
+      if (constant_infos()[c].side == CostSide::runs) {
+        throw InputError({rows_.file, 1}, fmt::format("'{}' needs rows of runs: columns scene, policy, target", name));
       }
       if (!has_column(rows_, constant_infos()[c])) {
         throw InputError({rows_.file, 1}, fmt::format("'{}' needs the column '{}'", name, constant_infos()[c].column));

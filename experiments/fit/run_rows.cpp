@@ -92,8 +92,7 @@ class RunModel {
         throw InputError({"machine " + request_.machine.name},
                          fmt::format("'{}' is 0 there, and a fit to runs needs a value to start from", name));
       }
-      const double high = name == "overlap" ? 1 : name == "pixel_nonlinearity" ? 1e6 : 86'400;
-      starts.push_back({.name = name, .start = value, .low = 0, .high = high, .scale = value});
+      starts.push_back({.name = name, .start = value, .low = 0, .high = constant_infos()[c].high, .scale = value});
     }
     return starts;
   }

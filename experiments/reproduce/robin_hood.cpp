@@ -12,9 +12,9 @@
 namespace framesim {
 namespace robin_hood {
 
-RunSpec forest_run(std::string_view scene, std::string_view policy, double target_s, std::string_view machine) {
+RunSpec forest_run(std::string_view scene, std::string_view policy, double target_s) {
   RunSpec spec = scene_run(fmt::format("graphicon-forest:{}", scene), policy, target_s);
-  spec.machine = parse_spec(machine, {"reproduce"});
+  spec.machine = parse_spec(kMachine, {"reproduce"});
   spec.estimator = parse_spec("table", {"reproduce"});
   return spec;
 }
@@ -159,28 +159,27 @@ void more_trees(SceneRuns& runs, Reproduction& out) {
 void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
   SceneRuns runs(context);
   out.remarks.push_back(
-      "Machine graphicon2005-fitted: draw, pixel, submit and pixel_fifo fitted to the five linear rows of table 2, so "
-      "that those rows are no prediction; all others are. Planner: the paper's equations 5 to 7 with C = 1; estimator: "
-      "its benchmark tables. Why its frames fall short: an estimate for a part of a tree holds the whole set-up of the "
-      "draw, which the machine hides where pixels take longer; and the two GPU stages of successive trees overlap, "
-      "which a benchmark of one tree does not see. At 200 ms this second part remains: print is closer to the target.");
+      "Machine graphicon2005-fitted: area_exponent and submit fitted to the five linear rows of table 2, so that those "
+      "rows are no prediction; the numbers of all others are. Planner: the paper's equations 5 to 7 with C = 1; "
+      "estimator: its benchmark tables. Why frames fall short: a primitive takes the longer the more is covered of its "
+      "tree, by a power of 0.04; tables hold that for complete trees, parts of them cover less and take less than "
+      "planned. That a power does this, and not a term that is quadratic in pixels or a set-up that pixels hide, was "
+      "seen on both paths.");
   table_2(runs, out);
   figure_4(runs, out);
   section_72(context, runs, out);
   more_trees(runs, out);
+  out.remarks.push_back("Figure 4: a step near a turn counts as a jump if it is at least twice the largest elsewhere.");
   out.remarks.push_back(
-      "A step near a turn counts as a jump if it is at least twice the largest elsewhere. The fitted machine pays "
-      "for pixels, and the last part of the zigzag path passes close to trees: there are large steps too.");
-  out.remarks.push_back(
-      "Section 7.2 under both machines: to the fitted one, which pays for pixels, lines and points are hardly "
-      "cheaper than triangles, as no row of table 2 says what they cost. The paper's reason, that function 11 "
-      "sometimes gives near trees more than they can use, is looked for in the worst frame, since in the mean over "
-      "frames it is below 0.4 % everywhere; it shows on the zigzag path under the assumed machine only. On the "
-      "straight path of the paper's test no tree, as assumed here, is that near.");
+      "Section 7.2: no row of table 2 says what lines and points cost, and levels are estimated whole, so that hardly "
+      "anything falls short here. The paper's reason, that function 11 sometimes gives near trees more than they can "
+      "use, is looked for in the worst frame, since in the mean over frames it is below 0.4 %; it shows on the zigzag "
+      "path. On the straight path of the paper's test no tree, as placed here, is that near.");
   out.remarks.push_back(
       "Section 7.1: \"almost identical\" is read as: the mean within 2 % of that of 600 trees, AvgErr within 0.02; "
-      "published is 0. At short targets equations 5 to 7 take the CPU time of the additional trees off the time "
-      "for drawing, though the pipeline hides most of it: with 2,000 trees it is half of 12.5 ms.");
+      "published is 0. With 2,000 trees on the same square fewer are complete, so more falls short; and at 12.5 ms "
+      "equations 5 to 7 take the CPU time of the additional trees off the time for drawing, though the pipeline hides "
+      "most of it.");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // What the parts of Robin Hood's reproduction share: the forest's runs, and rows made of their summaries.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
@@ -11,15 +10,12 @@
 namespace framesim::robin_hood {
 
 inline constexpr std::string_view kMachine = "graphicon2005-fitted";
-inline constexpr std::string_view kAssumedMachine = "graphicon2005";  // before the fit
-inline constexpr std::array<std::string_view, 2> kMachines = {kMachine, kAssumedMachine};
 inline constexpr std::string_view kPlain = "robin-hood:levels=false,planning=paper";   // section 7.1
 inline constexpr std::string_view kWithLevels = "robin-hood:value=11,planning=paper";  // section 7.2
 inline constexpr ReproduceTarget kErrorTarget{ReproduceTarget::Kind::absolute, 0.02};
 
 // A run of the built-in forest; `scene` are its parameters. Estimator: the paper's own benchmark, section 4.
-RunSpec forest_run(std::string_view scene, std::string_view policy, double target_s,
-                   std::string_view machine = kMachine);
+RunSpec forest_run(std::string_view scene, std::string_view policy, double target_s);
 std::string target_name(double target_s);  // "12.5 ms"
 
 // Mean, deviation and AvgErr of a row of `table`; figure and item are those of `form`.

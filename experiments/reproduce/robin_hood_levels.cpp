@@ -40,9 +40,9 @@ double beyond_finest(const Workload& workload, double budget_s, bool equation_11
   return total > 0 && budget_s > 0 ? beyond_s / budget_s : 0;
 }
 
-Remainders remainders(std::string_view scene, int equation, double target_s, std::string_view machine) {
+Remainders remainders(std::string_view scene, int equation, double target_s) {
   const std::string policy = fmt::format("robin-hood:value={},planning=paper", equation);
-  const RunSpec spec = forest_run(scene, policy, target_s, machine);
+  const RunSpec spec = forest_run(scene, policy, target_s);
   Remainders sum;
   double frames = 0;
   run_stepped(spec, load_scene(spec.scene), [&](const Simulation& simulation, const FrameRecord& record) {
@@ -77,26 +77,22 @@ constexpr std::array<int, 2> kEquations = {11, 8};
 
 }  // namespace
 
-// Under both machines: table 2, which the fit knows, draws no lines and points.
 void section_72(const ReproduceContext& context, SceneRuns& runs, Reproduction& out) {
   const PublishedTable table("robin_hood_levels");
   const double target_s = table.number(0, "target_s");
   const auto scene = [](std::string_view path) { return fmt::format("path={},representation=view-levels", path); };
-  std::array<Remainders, kMachines.size() * kPaths.size() * kEquations.size()> found;  // machine, path, equation
+  std::array<Remainders, kPaths.size() * kEquations.size()> found;
   parallel_for(found.size(), context.jobs, [&](std::size_t task) {
-    found[task] = remainders(scene(kPaths[task / 2 % 2]), kEquations[task % 2], target_s, kMachines[task / 4]);
+    found[task] = remainders(scene(kPaths[task / 2]), kEquations[task % 2], target_s);
   });
-  for (std::size_t m = 0; m < kMachines.size(); ++m) {
-    const std::string on = scene(table.text(0, "path"));
-    const std::size_t run = runs.add(forest_run(on, kWithLevels, target_s, kMachines[m]));
-    const std::size_t certified = runs.add(forest_run(on, "certified", target_s, kMachines[m]));
-    runs.run();
-    add_rows(out, table, 0, runs[run].summary, runs[certified].summary,
-             {.figure = "section 7.2", .item = fmt::format("{}, value 11, {}", kMachines[m], target_name(target_s))});
-    for (std::size_t p = 0; p < kPaths.size(); ++p) {
-      const std::size_t first = m * 4 + p * 2;
-      remainder_rows(fmt::format("{}, {}", kMachines[m], kPaths[p]), found[first], found[first + 1], out);
-    }
+  const std::string on = scene(table.text(0, "path"));
+  const std::size_t run = runs.add(forest_run(on, kWithLevels, target_s));
+  const std::size_t certified = runs.add(forest_run(on, "certified", target_s));
+  runs.run();
+  add_rows(out, table, 0, runs[run].summary, runs[certified].summary,
+           {.figure = "section 7.2", .item = fmt::format("value 11, {}", target_name(target_s))});
+  for (std::size_t p = 0; p < kPaths.size(); ++p) {
+    remainder_rows(std::string(kPaths[p]), found[2 * p], found[2 * p + 1], out);
   }
 }
 

@@ -1,5 +1,4 @@
-// Robin Hood 2005: frame times of figures 3, 4 and 7, primitives of figure 6. Each on both machines: the one whose costs
-// were read off such curves has their height, the one fitted to table 2 (names that end in "-fitted") its means.
+// Robin Hood 2005: frame times of figures 3, 4 and 7, primitives of figure 6.
 #include <fmt/format.h>
 
 #include "experiments/reproduce/frame_plot.h"
@@ -14,17 +13,14 @@ namespace framesim {
 namespace {
 
 using robin_hood::forest_run;
-using robin_hood::kMachine;
 using robin_hood::kPlain;
 
 constexpr double kUnrestrictedTarget_s = 0.2;  // full detail takes no notice of it
 
-std::string title(int figure, std::string_view shows, std::string_view machine) {
-  return fmt::format("Robin Hood 2005, figure {}: {}; machine {}", figure, shows, machine);
+std::string title(int figure, std::string_view shows) {
+  return fmt::format("Robin Hood 2005, figure {}: {}; machine {}", figure, shows, robin_hood::kMachine);
 }
-std::string file_name(int figure, std::string_view machine) {
-  return fmt::format("robin-hood-figure-{}{}", figure, machine == kMachine ? "-fitted" : "");
-}
+std::string file_name(int figure) { return fmt::format("robin-hood-figure-{}", figure); }
 
 // ---- Figures 3 and 4: without restriction (bold), under each target (thin), the targets (dashed) ----
 
@@ -38,21 +34,21 @@ struct PathRuns {
   std::vector<TargetRun> restricted;
 };
 
-PathRuns add_path(SceneRuns& runs, const std::string& path, std::string_view machine) {
+PathRuns add_path(SceneRuns& runs, const std::string& path) {
   PathRuns list{.path = path,
-                .unrestricted = runs.add(forest_run("path=" + path, "full-detail", kUnrestrictedTarget_s, machine))};
+                .unrestricted = runs.add(forest_run("path=" + path, "full-detail", kUnrestrictedTarget_s))};
   const PublishedTable table("robin_hood_table2");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.text(row, "path") != path) continue;
     const double target_s = table.number(row, "target_s");
-    const RunSpec spec = forest_run("path=" + path, kPlain, target_s, machine);
+    const RunSpec spec = forest_run("path=" + path, kPlain, target_s);
     list.restricted.push_back({target_s, runs.add(spec)});
   }
   return list;
 }
 
-Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure, std::string_view machine) {
-  FramePlot plot{.title = title(figure, list.path + " path, without levels of detail", machine)};
+Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure) {
+  FramePlot plot{.title = title(figure, list.path + " path, without levels of detail")};
   plot.curves.push_back(
       frame_time_curve("without restriction", kUnrestrictedColour, 2.5, runs[list.unrestricted].records));
   for (const TargetRun& run : list.restricted) {
@@ -64,24 +60,24 @@ Picture path_picture(const SceneRuns& runs, const PathRuns& list, int figure, st
     plot.lines.front().title = fmt::format("targets {:g} to {:g} ms", 1e3 * list.restricted.front().target_s,
                                            1e3 * list.restricted.back().target_s);
   }
-  return {file_name(figure, machine), frame_plot_script(plot)};
+  return {file_name(figure), frame_plot_script(plot)};
 }
 
 // ---- Figures 6 and 7: with levels of detail ----
 
-RunSpec levels_run(std::string_view machine) {
+RunSpec levels_run() {
   const PublishedTable table("robin_hood_levels");
   return forest_run(fmt::format("path={},representation=view-levels", table.text(0, "path")), robin_hood::kWithLevels,
-                    table.number(0, "target_s"), machine);
+                    table.number(0, "target_s"));
 }
 
-Picture figure_7(const SceneRuns& runs, std::size_t unrestricted, std::size_t restricted, std::string_view machine) {
+Picture figure_7(const SceneRuns& runs, std::size_t unrestricted, std::size_t restricted) {
   const double target_ms = 1e3 * runs[restricted].target_s;
-  FramePlot plot{.title = title(7, "linear path, with levels of detail", machine)};
+  FramePlot plot{.title = title(7, "linear path, with levels of detail")};
   plot.curves.push_back(frame_time_curve("without restriction", kUnrestrictedColour, 2.5, runs[unrestricted].records));
   plot.curves.push_back(frame_time_curve("robin-hood", kRestrictedColour, 1.2, runs[restricted].records));
   plot.lines.push_back({fmt::format("target {:g} ms", target_ms), target_ms});
-  return {file_name(7, machine), frame_plot_script(plot)};
+  return {file_name(7), frame_plot_script(plot)};
 }
 
 // Of the frame just run: what was drawn, in thousands.
@@ -103,8 +99,8 @@ Primitives primitives_drawn(const Simulation& simulation) {
   return drawn;
 }
 
-Picture figure_6(const ReproduceContext& context, std::string_view machine) {
-  RunSpec spec = levels_run(machine);
+Picture figure_6(const ReproduceContext& context) {
+  RunSpec spec = levels_run();
   spec.frames = context.frames;
   FrameCurve triangles{.title = "triangles", .colour = "#000000", .width = 1.6, .first_frame = 0};
   FrameCurve lines{.title = "lines", .colour = "#0072B2", .width = 1.6, .first_frame = 0};
@@ -115,33 +111,24 @@ Picture figure_6(const ReproduceContext& context, std::string_view machine) {
     lines.values.push_back(drawn.lines);
     points.values.push_back(drawn.points);
   });
-  FramePlot plot{
-      .title = title(6, fmt::format("primitives drawn, linear path, target {:g} ms", 1e3 * spec.target_s), machine),
-      .y_title = "primitives in thousands"};
+  FramePlot plot{.title = title(6, fmt::format("primitives drawn, linear path, target {:g} ms", 1e3 * spec.target_s)),
+                 .y_title = "primitives in thousands"};
   plot.curves = {std::move(triangles), std::move(lines), std::move(points)};
-  return {file_name(6, machine), frame_plot_script(plot)};
-}
-
-std::vector<Picture> pictures_on(const ReproduceContext& context, std::string_view machine) {
-  SceneRuns runs(context);
-  const PathRuns linear = add_path(runs, "linear", machine), zigzag = add_path(runs, "zigzag", machine);
-  RunSpec levels = levels_run(machine);
-  const std::size_t restricted = runs.add(levels);
-  levels.policy = parse_spec("full-detail", {"reproduce"});
-  const std::size_t unrestricted = runs.add(levels);
-  runs.run();
-  return {path_picture(runs, linear, 3, machine), path_picture(runs, zigzag, 4, machine), figure_6(context, machine),
-          figure_7(runs, unrestricted, restricted, machine)};
+  return {file_name(6), frame_plot_script(plot)};
 }
 
 }  // namespace
 
 std::vector<Picture> robin_hood_pictures(const ReproduceContext& context) {
-  std::vector<Picture> pictures;
-  for (const std::string_view machine : robin_hood::kMachines) {
-    for (Picture& picture : pictures_on(context, machine)) pictures.push_back(std::move(picture));
-  }
-  return pictures;
+  SceneRuns runs(context);
+  const PathRuns linear = add_path(runs, "linear"), zigzag = add_path(runs, "zigzag");
+  RunSpec levels = levels_run();
+  const std::size_t restricted = runs.add(levels);
+  levels.policy = parse_spec("full-detail", {"reproduce"});
+  const std::size_t unrestricted = runs.add(levels);
+  runs.run();
+  return {path_picture(runs, linear, 3), path_picture(runs, zigzag, 4), figure_6(context),
+          figure_7(runs, unrestricted, restricted)};
 }
 
 }  // namespace framesim

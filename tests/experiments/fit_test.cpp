@@ -108,6 +108,22 @@ TEST_CASE("fit refuses bad rows at their line, and too few of them") {
 }
 
 // T = max + s*min with s = 1/2: 10 + 2 = 12, 8 + 3 = 11, 20 + 5 = 25 ms.
+// What each draw covers is not in rows of frames.
+TEST_CASE("fit finds an area exponent from runs only, and starts no fit to frames from a machine with one") {
+  const std::string text = rows(6, 0.01, 60);
+  CHECK(refusal([&] {
+          fit_text(text, {"polygon", "area_exponent"});
+        }).find("'area_exponent' needs rows of runs") != std::string::npos);
+  const TestFolder folder;
+  const FrameRows read = read_frame_rows(folder.write("rows.csv", text), 1);
+  FitRequest from = request({"polygon"});
+  from.machine = load_machine(parse_spec("graphicon2005-fitted"));
+  CHECK(refusal([&] { fit_frames(from, read); }).find("'graphicon2005-fitted' has an area_exponent") !=
+        std::string::npos);
+  from.constants = {"overlap"};  // of measured CPU and GPU times: what the GPU does with its polygons is not asked
+  CHECK(refusal([&] { fit_frames(from, read); }).empty());
+}
+
 TEST_CASE("fit takes the overlap from a capture's columns and passes the others over") {
   const MachineFit fit =
       fit_text("Application,CPUBusy,GPUBusy,FrameTime\na.exe,4,10,12\na.exe,8,6,11\na.exe,20,10,25\n", {});
@@ -155,6 +171,30 @@ TEST_CASE("fit through the simulator finds the polygon cost of the machine that 
   const MachineFit fit = fit_runs(from, runs, "test", 1, true);
   CHECK(fit.constants[0].value == Approx(known).epsilon(1e-4));
   CHECK(fit_runs(from, runs, "test", 2, true).constants[0].value == fit.constants[0].value);
+}
+
+// Trees that are complete in the one and drawn in part in the other. A start of 0 has no size to step by.
+TEST_CASE("fit through the simulator finds the area exponent of the machine that made the runs") {
+  FitRequest from = request({"area_exponent"});
+  from.machine = load_machine(parse_spec("graphicon2005-fitted"));
+  const std::size_t exponent = find_constant("area_exponent");
+  const double known = constant_of(from.machine, exponent);
+  set_constant(from.machine, exponent, known / 2);
+  std::vector<MeasuredRun> runs;
+  for (const double target_s : {0.025, 1.0}) {
+    MeasuredRun row{.spec = {.scene = parse_spec("graphicon-forest:trees=100"),
+                             .policy = parse_spec("robin-hood:levels=false"),
+                             .machine = parse_spec("graphicon2005-fitted"),
+                             .target_s = target_s},
+                    .mean_s = {},
+                    .avg_err = {}};
+    row.spec.frames = 6;
+    row.mean_s = run(row.spec, load_scene(row.spec.scene)).summary.mean_s;
+    runs.push_back(row);
+  }
+  CHECK(fit_runs(from, runs, "test", 1, true).constants[0].value == Approx(known).epsilon(1e-4));
+  set_constant(from.machine, exponent, 0);
+  CHECK(refusal([&] { fit_runs(from, runs, "test", 1, true); }).find("'area_exponent' is 0") != std::string::npos);
 }
 
 TEST_CASE("fit on the command line writes a profile, prints intervals, and refuses with the right exit code") {

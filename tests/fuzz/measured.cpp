@@ -9,7 +9,8 @@ namespace {
 
 // One constant, by the number of rows: a fit takes long, and tries are to be many.
 void fit(const FrameRows& rows) {
-  constexpr const char* kConstants[] = {"frame_setup", "submit", "polygon", "pixel_nonlinearity", "overlap"};
+  constexpr const char* kConstants[] = {"frame_setup",        "submit",        "polygon",
+                                        "pixel_nonlinearity", "area_exponent", "overlap"};
   const FitRequest request{.machine = {}, .constants = {kConstants[rows.rows.size() % std::size(kConstants)]}};
   fuzz::accepts([&] {
     const MachineFit fit = fit_frames(request, rows);

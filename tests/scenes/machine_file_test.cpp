@@ -32,7 +32,7 @@ TEST_CASE("a whole machine profile is read", "[machine_file]") {
                                                  "[machine.algorithm.flat]\npolygon = \"7us\"\n"
                                                  "[machine.algorithm.default]\ndraw = \"1us\"\npolygon = \"100ns\"\n"
                                                  "vertex = \"50ns\"\npixel = \"1ns\"\ntexture_byte = \"0.5ns\"\n"
-                                                 "pixel_nonlinearity = 0.25\n"),
+                                                 "pixel_nonlinearity = 0.25\narea_exponent = 0.04\n"),
                                          "m.toml");
   CHECK(m.name == "m");
   CHECK(m.source == "s");
@@ -48,6 +48,7 @@ TEST_CASE("a whole machine profile is read", "[machine_file]") {
   CHECK(m.overlap.kind == OverlapKind::staged);
   CHECK(m.overlap.frames_in_flight == 2);
   CHECK(costs(m, Algorithm::flat).polygon_s == 7e-6);
+  CHECK(costs(m, Algorithm::flat).area_exponent == 0);
   CHECK(costs(m, Algorithm::flat).draw_s == 0);  // the default is for algorithms that are not listed at all
   for (const Algorithm a :
        {Algorithm::gouraud, Algorithm::textured, Algorithm::lines, Algorithm::points, Algorithm::splats}) {
@@ -57,6 +58,7 @@ TEST_CASE("a whole machine profile is read", "[machine_file]") {
     CHECK(costs(m, a).pixel_s == 1e-9);
     CHECK(costs(m, a).texture_byte_s == 0.5e-9);
     CHECK(costs(m, a).pixel_nonlinearity == 0.25);
+    CHECK(costs(m, a).area_exponent == 0.04);
   }
 }
 
@@ -86,6 +88,7 @@ TEST_CASE("a machine file is refused at file, line and column", "[machine_file]"
       {machine(rest + "[machine.algorithm.flat]\npolygons = \"1us\"\n"), "m.toml:8:1", "did you mean 'polygon'?"},
       {machine(rest + "[machine.algorithm.flat]\npolygon = \"0us\"\n"), "m.toml:7:1", "no cost above 0"},
       {machine(rest + "pixel_nonlinearity = inf\n"), "m.toml:7:22", "found inf"},
+      {machine(rest + "area_exponent = 1.5\n"), "m.toml:7:17", "from 0 to 1"},
       {machine("source = \"s\"\nalgorithm = 1\n"), "m.toml:5:13", "a table [algorithm]"},
       {machine("source = \"s\"\n[machine.algorithm]\nflat = 1\n"), "m.toml:6:8", "a table [flat]"},
   };

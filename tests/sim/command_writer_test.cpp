@@ -1,5 +1,7 @@
 #include "sim/command_writer.h"
 
+#include <utility>
+
 #include "tests/catch.h"
 #include "tests/sim/random_workload.h"
 
@@ -14,8 +16,9 @@ bool same(const CommandColumns& a, const CommandColumns& b) {
          a.upload_bytes == b.upload_bytes;
 }
 
-MachineProfile profile(bool bus) {
+MachineProfile profile(bool bus, double area_exponent) {
   MachineProfile machine = test_profile(0.4);
+  for (AlgorithmCosts& costs : machine.algorithm) costs.area_exponent = area_exponent;
   machine.submit_draw_s = 3e-7;
   if (bus) machine.bus.chunk = Picoseconds(1'000'000);
   return machine;
@@ -25,12 +28,12 @@ MachineProfile profile(bool bus) {
 
 // Workloads of 0 to 400 items: with fewer than there are facts nothing is worked out before.
 TEST_CASE("the writer's commands are Machine::command's, bit for bit, whatever it wrote before") {
-  for (const bool bus : {false, true}) {
-    const Machine machine(profile(bus));
+  for (const auto& [bus, area_exponent] : {std::pair{false, 0.0}, {true, 0.0}, {false, 0.3}}) {
+    const Machine machine(profile(bus, area_exponent));
     CommandWriter writer;
     CommandColumns written;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-      CAPTURE(bus, seed);
+      CAPTURE(bus, area_exponent, seed);
       const RandomWorkload random(seed, seed * seed % 401);
       const Selection selection = random.select(0);
       CommandColumns plain;

@@ -77,7 +77,48 @@ TEST_CASE("a machine's nonlinearity in projected area may be 0 to a million") {
   CHECK_NOTHROW(Machine(profile));
   for (const double wrong : {-1.0, 1.1e6, std::numeric_limits<double>::quiet_NaN()}) {
     profile.algorithm[0].pixel_nonlinearity = wrong;
-    CHECK_THROWS_WITH(Machine(profile), contains("allowed is 0 to 1e6"));
+    CHECK_THROWS_WITH(Machine(profile), contains("allowed is 0 to 1000000"));
+  }
+}
+
+// Half of 2,000 pixels are covered, 1,000; to the power of e = 1/3 that is 10. Draw calls and texture do not grow.
+TEST_CASE("a primitive takes longer by a power of what its draw covers, a draw call does not") {
+  MachineProfile profile = round_numbers();
+  for (AlgorithmCosts& costs : profile.algorithm) costs.area_exponent = 1.0 / 3;
+  const Machine machine(profile);
+  const Facts facts{
+      .polygons = 100, .vertices = 200, .texture_bytes = 1000, .lines = 10, .points = 50, .draws = 2, .coverage = 0.5};
+  // 2 draws 2 us + 1000 bytes 1 us, and 10 times (10 us polygons + 2 us vertices + 0.5 us lines + 1 us points)
+  CHECK(machine.draw_time(facts, 2000, 1, false).primitive_s == Approx(3e-6 + 135e-6).epsilon(1e-12));
+  // half of it: 500 pixels, so half of everything but the draws, and 500^(1/3) = 7.93700526 times
+  CHECK(machine.draw_time(facts, 2000, 0.5, false).primitive_s ==
+        Approx(2.5e-6 + 6.75e-6 * 7.9370052598).epsilon(1e-9));
+  // what covers less than a pixel counts as one
+  CHECK(machine.draw_time(facts, 0.1, 1, false).primitive_s == Approx(16.5e-6).epsilon(1e-12));
+  CHECK(machine.draw_time(facts, 0, 1, false).primitive_s == machine.draw_time(facts, 2, 1, false).primitive_s);
+}
+
+TEST_CASE("without an exponent, or with nothing that grows, a draw has the bits of a machine without") {
+  MachineProfile growing = round_numbers();
+  for (AlgorithmCosts& costs : growing.algorithm) costs.area_exponent = 0.5;
+  const Machine plain(round_numbers()), exponent(growing);
+  const Facts facts{.polygons = 1e6, .stated_cost_s = 0.25}, texture{.texture_bytes = 777};
+  for (const Facts& each : {facts, texture}) {
+    CHECK(exponent.draw_time(each, 12345, 0.7, false).primitive_s ==
+          plain.draw_time(each, 12345, 0.7, false).primitive_s);
+    CHECK_FALSE(exponent.level_costs(each).primitives_depend_on_view());
+  }
+  CHECK_FALSE(plain.level_costs({.polygons = 5}).primitives_depend_on_view());
+  CHECK(exponent.level_costs({.polygons = 5}).primitives_depend_on_view());
+}
+
+TEST_CASE("a machine's area exponent may be 0 to 1") {
+  MachineProfile profile = round_numbers();
+  profile.algorithm[0].area_exponent = 1;
+  CHECK_NOTHROW(Machine(profile));
+  for (const double wrong : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
+    profile.algorithm[0].area_exponent = wrong;
+    CHECK_THROWS_WITH(Machine(profile), contains("area_exponent") && contains("allowed is 0 to 1"));
   }
 }
 
