@@ -77,7 +77,23 @@ Falls falls(const Reproduction& out, std::string_view path) {
   return falls;
 }
 
+// The rows of AvgErr in which certified is nearer to the target than Robin Hood, both simulated.
+void count_beaten(Reproduction& out) {
+  double rows = 0, beaten = 0;
+  for (const ReproducedRow& row : out.rows) {
+    if (row.quantity != "AvgErr") continue;
+    rows += 1;
+    beaten += *row.certified < row.simulated;
+  }
+  out.rows.push_back({.figure = "table 2",
+                      .item = "both paths, certified",
+                      .quantity = fmt::format("AvgErr below Robin Hood's, of {:g}", rows),
+                      .simulated = beaten,
+                      .target = ReproduceTarget{ReproduceTarget::Kind::at_least, rows}});
+}
+
 void summarise_table(Reproduction& out) {
+  count_beaten(out);
   for (const char* path : {"linear", "zigzag"}) {
     const Falls steps = falls(out, path);
     out.rows.push_back({.figure = "table 2",
@@ -102,7 +118,7 @@ void table_2(SceneRuns& runs, Reproduction& out) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     TableRun next{.path = table.text(row, "path"), .target_s = table.number(row, "target_s")};
     next.robin_hood = runs.add(forest_run("path=" + next.path, kPlain, next.target_s));
-    next.certified = runs.add(forest_run("path=" + next.path, "certified", next.target_s));
+    next.certified = runs.add(forest_run("path=" + next.path, kCertified, next.target_s));
     list.push_back(std::move(next));
   }
   runs.run();
@@ -164,7 +180,7 @@ void reproduce_robin_hood(const ReproduceContext& context, Reproduction& out) {
       "estimator: its benchmark tables. Why frames fall short: a primitive takes the longer the more is covered of its "
       "tree, by a power of 0.04; tables hold that for complete trees, parts of them cover less and take less than "
       "planned. That a power does this, and not a term that is quadratic in pixels or a set-up that pixels hide, was "
-      "seen on both paths.");
+      "seen on both paths. Certified: miss-rate=50, as AvgErr counts short frames like long ones.");
   table_2(runs, out);
   figure_4(runs, out);
   section_72(context, runs, out);

@@ -87,7 +87,7 @@ void section_72(const ReproduceContext& context, SceneRuns& runs, Reproduction& 
   });
   const std::string on = scene(table.text(0, "path"));
   const std::size_t run = runs.add(forest_run(on, kWithLevels, target_s));
-  const std::size_t certified = runs.add(forest_run(on, "certified", target_s));
+  const std::size_t certified = runs.add(forest_run(on, kCertified, target_s));
   runs.run();
   add_rows(out, table, 0, runs[run].summary, runs[certified].summary,
            {.figure = "section 7.2", .item = fmt::format("value 11, {}", target_name(target_s))});
