@@ -27,4 +27,6 @@ void fail_check(const char* file, int line, const char* condition, const std::st
   throw InternalError(fmt::format("{}:{}: check failed: {}: {}", last_two_parts(file), line, condition, detail));
 }
 
+void refuse_time(const std::string& detail) { throw InputError({"simulated time"}, detail); }
+
 }  // namespace framesim

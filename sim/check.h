@@ -42,6 +42,11 @@ class InternalError : public std::logic_error {
 // Throws InternalError with source position, the failed condition and `detail`.
 [[noreturn]] void fail_check(const char* file, int line, const char* condition, const std::string& detail);
 
+// What a machine, a scene or an effect asks for takes longer than simulated time can hold: a day for one stage of one frame,
+// 106 days in all. Throws InputError with `detail`: costs and times come from people, and only the run shows that they are
+// too much together.
+[[noreturn]] void refuse_time(const std::string& detail);
+
 }  // namespace framesim
 
 // FRAMESIM_CHECK(condition, fmt::format(...)): the detail is only built when the condition is false.

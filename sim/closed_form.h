@@ -23,7 +23,7 @@ class ClosedForm final : public Engine {
   // The share of the overlap of `machine`; a staged one: of each frame, as above.
   explicit ClosedForm(const MachineProfile& machine);
   EngineKind kind() const override { return EngineKind::closed_form; }
-  // Throws InternalError naming the simulated time if the clock would pass 2^63 ps, and for a negative duration.
+  // Throws InputError naming the simulated time if the clock would pass 2^63 ps, InternalError for a negative duration.
   FrameTimes run(const FrameWork& work) override;
 
  private:

@@ -66,7 +66,7 @@ class Engine {
   virtual ~Engine() = default;
   // Which of the three this is; never `automatic`.
   virtual EngineKind kind() const = 0;
-  // Runs the next frame. Throws InternalError when the clock would pass 2^63 ps.
+  // Runs the next frame. Throws InputError when the clock would pass 2^63 ps (check.h, refuse_time).
   virtual FrameTimes run(const FrameWork& work) = 0;
 };
 

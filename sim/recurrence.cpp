@@ -165,9 +165,10 @@ void StagedRecurrence::run_careful(const CommandColumns& commands, std::size_t b
   }
   FRAMESIM_CHECK(negative >= 0, fmt::format("frame {}, which starts at simulated time {} ps, has a negative duration",
                                             frame_, cpu_start.count()));
-  FRAMESIM_CHECK(!overflow,
-                 fmt::format("the clock would pass 2^63 ps in frame {}, which starts at simulated time {} ps", frame_,
-                             cpu_start.count()));
+  if (overflow) {
+    refuse_time(fmt::format("the clock would pass 2^63 ps, 106 days, in frame {}, which starts at simulated time {} ps",
+                            frame_, cpu_start.count()));
+  }
   submitted_ = p, primitive_end_ = e1, pixel_end_ = e2;
 }
 

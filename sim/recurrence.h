@@ -18,8 +18,8 @@ class StagedRecurrence final : public Engine {
   explicit StagedRecurrence(const MachineProfile& machine, bool critical_path = false);
 
   EngineKind kind() const override { return EngineKind::recurrence; }
-  // Throws InternalError naming the simulated time if the clock would pass 2^63 ps, for a negative duration and for a
-  // frame without commands. After a throw the engine must not be used again.
+  // Throws InputError naming the simulated time if the clock would pass 2^63 ps (check.h, refuse_time), InternalError for a
+  // negative duration and for a frame without commands. After a throw the engine must not be used again.
   FrameTimes run(const FrameWork& work) override;
 
  private:

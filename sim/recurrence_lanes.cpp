@@ -256,9 +256,10 @@ void RecurrenceLanes::run_careful(const LaneCommands& commands, std::size_t begi
     const std::int64_t start = times[lane].cpu_start.count();
     FRAMESIM_CHECK(negative >= 0, fmt::format("frame {}, which starts at simulated time {} ps, has a negative duration",
                                               frame_, start));
-    FRAMESIM_CHECK(
-        !overflow,
-        fmt::format("the clock would pass 2^63 ps in frame {}, which starts at simulated time {} ps", frame_, start));
+    if (overflow) {
+      refuse_time(fmt::format(
+          "the clock would pass 2^63 ps, 106 days, in frame {}, which starts at simulated time {} ps", frame_, start));
+    }
   }
 }
 

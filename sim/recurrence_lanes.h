@@ -42,7 +42,7 @@ struct LaneWork {
 class RecurrenceLanes {
  public:
   explicit RecurrenceLanes(const MachineProfile& machine);
-  // Runs the next frame in all lanes. Throws InternalError where the StagedRecurrence of some lane would, with the message
+  // Runs the next frame in all lanes. Throws where the StagedRecurrence of some lane would, with the message
   // of the first such lane; after a throw it must not be used again. No allocation.
   void run(const LaneWork& work, std::array<FrameTimes, kLanes>& times);
 

@@ -7,8 +7,12 @@
 namespace framesim {
 
 void refuse_duration(double seconds) {
-  fail_check(__FILE__, __LINE__, "a duration is not negative and at most a day",
-             fmt::format("a duration of {} s is not in [0, {}] s", seconds, to_seconds(kLongestDuration)));
+  if (seconds > to_seconds(kLongestDuration)) {
+    refuse_time(fmt::format("a stage of a frame takes {} s; allowed is at most a day, {} s", seconds,
+                            to_seconds(kLongestDuration)));
+  }
+  fail_check(__FILE__, __LINE__, "a duration is a number, and not negative",
+             fmt::format("a duration of {} s", seconds));
 }
 
 }  // namespace framesim

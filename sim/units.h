@@ -23,12 +23,12 @@ constexpr double to_seconds(Picoseconds t) { return static_cast<double>(t.count(
 // One stage of one frame may not be longer than this (a day); it keeps sums of many stages inside 64 bits.
 inline constexpr Picoseconds kLongestDuration{86'400'000'000'000'000};
 
-// A broken invariant: throws InternalError naming the value.
+// Names the value: InputError for one that is too long (check.h, refuse_time), InternalError, a broken invariant, for another.
 [[noreturn]] void refuse_duration(double seconds);
 
 // `seconds` rounded up to a whole picosecond (a whole number of picoseconds written as a decimal stays that number, although
-// its double may lie a hair above); a negative or NaN value, or one beyond `kLongestDuration`, is a broken
-// invariant and throws InternalError (see check.h) naming the value. Inline: it is called for every draw command.
+// its double may lie a hair above). Throws InternalError for a negative or NaN value, and InputError for one beyond
+// `kLongestDuration`, which is what somebody's costs come to (check.h). Inline: it is called for every draw command.
 inline Picoseconds ceil_picoseconds(double seconds) {
   // Not `seconds < 0`, so that a NaN fails too.
   if (!(seconds >= 0 && seconds <= to_seconds(kLongestDuration))) refuse_duration(seconds);

@@ -130,9 +130,10 @@ class Jitter : public Effect {
     if (stretch(factors, count, longest_, durations_ps.data() + begin)) return;
     for (std::size_t i = 0; i < count; ++i) {
       const double varied = stretched(durations_ps[begin + i], factors[i]);
-      FRAMESIM_CHECK(
-          varied <= static_cast<double>(kLongestDuration.count()),
-          fmt::format("jitter makes a stage of command {} of frame {} take {} ps", begin + i, frame, varied));
+      if (varied > static_cast<double>(kLongestDuration.count())) {
+        refuse_time(fmt::format("jitter makes a stage of command {} of frame {} take {} ps; allowed is at most a day",
+                                begin + i, frame, varied));
+      }
       durations_ps[begin + i] = static_cast<std::int64_t>(varied);
     }
   }

@@ -84,8 +84,10 @@ class Thermal : public Effect {
     if (factor == 1) return;
     for (std::int64_t& duration : durations_ps) {
       const double slower = static_cast<double>(duration) * factor;
-      FRAMESIM_CHECK(slower <= static_cast<double>(kLongestDuration.count()),
-                     fmt::format("at {} K a stage of frame {} takes {} ps", temperature_, frame, slower));
+      if (slower > static_cast<double>(kLongestDuration.count())) {
+        refuse_time(fmt::format("at {} K a stage of frame {} takes {} ps; allowed is at most a day", temperature_,
+                                frame, slower));
+      }
       duration = std::llround(slower);
     }
   }

@@ -51,6 +51,19 @@ TEST_CASE("command line: --help of each verb has examples and goes to stdout") {
   CHECK(run_program({"--help"}).exit_code == 0);
 }
 
+// Costs that a machine file may state, but that are too much together: the machine is bad input, not the program.
+TEST_CASE(
+    "command line: a machine whose draws take longer than a day is refused, by a run and by an estimator's benchmark") {
+  const TestFolder folder;
+  const std::string machine = folder.write("slow.toml",
+                                           "framesim = 1\n[machine]\nname = \"slow\"\nsource = \"test\"\n"
+                                           "[machine.algorithm.default]\npolygon = \"10s\"\npixel = \"1s\"\n");
+  for (const char* estimator : {"oracle", "table"}) {
+    check_refused({"run", "auditorium", "--policy", "full-detail", "--machine", machine, "--estimator", estimator}, 3,
+                  {"simulated time: "});
+  }
+}
+
 TEST_CASE("command line: --version") {
   const ProgramRun version = run_program({"--version"});
   CHECK(version.exit_code == 0);

@@ -75,5 +75,5 @@ TEST_CASE("a level that takes too long is refused if it is drawn, and only then"
   writer.write(machine, w, selection, commands);
   CHECK(commands.primitive_ps[2] == ceil_picoseconds(4e-6 + 30'000).count());
   selection.resolution = {1, 1};
-  CHECK_THROWS_AS(writer.write(machine, w, selection, commands), InternalError);
+  CHECK_THROWS_AS(writer.write(machine, w, selection, commands), InputError);
 }

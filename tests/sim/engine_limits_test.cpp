@@ -22,7 +22,7 @@ constexpr std::int64_t kLastTime = std::numeric_limits<std::int64_t>::max();
 std::string refusal(Engine& engine, const PipelineFrame& frame) {
   try {
     engine.run(frame.work());
-  } catch (const InternalError& error) {
+  } catch (const std::exception& error) {
     return error.what();
   }
   return "";

@@ -101,7 +101,7 @@ template <class Run>
 std::string refusal(const Run& run) {
   try {
     run();
-  } catch (const InternalError& error) {
+  } catch (const std::exception& error) {
     return error.what();
   }
   return "";

@@ -54,8 +54,11 @@ TEST_CASE("picoseconds survive the way to seconds and back", "[units]") {
 TEST_CASE("ceil_picoseconds refuses what is no duration and names it", "[units]") {
   CHECK_THROWS_AS(ceil_picoseconds(-1e-15), InternalError);
   CHECK_THROWS_AS(ceil_picoseconds(std::numeric_limits<double>::quiet_NaN()), InternalError);
-  CHECK_THROWS_AS(ceil_picoseconds(std::numeric_limits<double>::infinity()), InternalError);
-  CHECK_THROWS_AS(ceil_picoseconds(std::nextafter(86400.0, 1e9)), InternalError);
+  // A day is the limit, and what is longer comes from somebody's costs.
+  CHECK_THROWS_AS(ceil_picoseconds(std::numeric_limits<double>::infinity()), InputError);
+  CHECK_THROWS_AS(ceil_picoseconds(std::nextafter(86400.0, 1e9)), InputError);
+  CHECK_THROWS_WITH(ceil_picoseconds(1e6),
+                    "simulated time: a stage of a frame takes 1000000 s; allowed is at most a day, 86400 s");
   try {
     ceil_picoseconds(-0.5);
     FAIL("no error");

@@ -184,7 +184,7 @@ TEST_CASE("jitter treats very long commands as all others") {
 
 TEST_CASE("jitter refuses a stage longer than a day and a sigma out of range") {
   CommandColumns commands = columns(100, 0, kLongestDuration.count(), 0);  // some factor of 100 is above 1
-  CHECK_THROWS_AS(vary(*make_effect("jitter", 1), 0, commands), InternalError);
+  CHECK_THROWS_AS(vary(*make_effect("jitter", 1), 0, commands), InputError);
   for (const char* wrong : {"jitter:sigma=-0.1", "jitter:sigma=2.1", "jitter:sigma=nan", "jitter:deviation=1"}) {
     CAPTURE(wrong);
     CHECK_THROWS_AS(make_effect(wrong, 1), InputError);
