@@ -64,31 +64,39 @@ std::string names_of(const Plan& plan, bool force_inert, auto&& wanted) {
 
 std::string_view name_of(EngineKind kind) { return kEngineKindNames[static_cast<std::size_t>(kind)]; }
 
+// What the times are exact for: the overlap, and by name every effect that takes part.
+std::string exact_for(const Plan& plan, bool force_inert) {
+  const std::string active = names_of(plan, force_inert, [](const Plan::EffectState&) { return true; });
+  return fmt::format("exact for overlap {}{}", to_string(plan.overlap),
+                     active.empty() ? ", no effect is active" : " with " + active);
+}
+
 // Why the engine that is exact for the run is the one that it is.
 std::string why_exact(const Plan& plan, bool force_inert) {
-  const std::string overlap = to_string(plan.overlap);
   const std::string need = names_of(plan, force_inert, [](const Plan::EffectState& e) { return e.needs_events; });
   switch (plan.exact) {
     case EngineKind::closed_form:
-      return fmt::format("overlap {} is one formula a frame", overlap);
+      return "one formula a frame";
     case EngineKind::events:
-      return fmt::format("exact for all active effects, overlap {}; needed for {}", overlap, need);
+      return "needed for " + need;
     case EngineKind::recurrence:
     case EngineKind::automatic:
       break;
   }
-  return fmt::format("exact for all active effects, overlap {}; one pass over the commands", overlap);
+  return "one pass over the commands";
 }
 
 std::string engine_text(const Plan& plan, bool force_inert) {
   const std::string_view asked = plan.asked == EngineKind::automatic ? "" : "asked for; ";
-  const std::string exact = why_exact(plan, force_inert);
-  if (plan.engine == plan.exact) return fmt::format("{}: {}{}", name_of(plan.engine), asked, exact);
+  const std::string exact = exact_for(plan, force_inert);
+  const std::string why = why_exact(plan, force_inert);
   if (!plan.parts.left_out.empty()) {
-    return fmt::format("{}: {}not exact, as {} would be ({})", name_of(plan.engine), asked, name_of(plan.exact), exact);
+    return fmt::format("{}: {}not exact, as {} would be ({}; {})", name_of(plan.engine), asked, name_of(plan.exact),
+                       exact, why);
   }
-  return fmt::format("{}: {}exact for all active effects, overlap {}; the {} gives the same times sooner",
-                     name_of(plan.engine), asked, to_string(plan.overlap), name_of(plan.exact));
+  if (plan.engine == plan.exact) return fmt::format("{}: {}{}; {}", name_of(plan.engine), asked, exact, why);
+  return fmt::format("{}: {}{}; the {} gives the same times sooner", name_of(plan.engine), asked, exact,
+                     name_of(plan.exact));
 }
 
 std::string effect_text(const Plan::EffectState& effect, bool force_inert) {

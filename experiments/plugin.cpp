@@ -13,7 +13,8 @@
 namespace framesim {
 namespace {
 
-// A name without a slash means a file here, as everywhere else on the command line, not one on the loader's search path.
+// A name without a slash means a file here, as everywhere else on the command line, not one on the loader's search
+// path.
 std::string loader_path(const std::string& path) { return path.find('/') == std::string::npos ? "./" + path : path; }
 
 // Why it cannot be taken; empty if it can.

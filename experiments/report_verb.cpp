@@ -21,7 +21,8 @@ struct ReportOptions {
   std::string store, output, view;
 };
 
-// The run that gives these results, from their names. Effects are named in full, so that the scene's own are put aside first.
+// The run that gives these results, from their names. Effects are named in full, so that the scene's own are put aside
+// first.
 RunSpec spec_of(const RunResult& result, const InputLocation& where) {
   RunSpec spec;
   spec.scene = parse_spec(result.scene, where);
@@ -43,7 +44,8 @@ bool gives(RunSpec spec, const Scene& scene, const RunResult& result) {
   return run(spec, scene).records_hash == result.records_hash;
 }
 
-// The scene from above under that run. Throws InputError where it is not there any more, or does not give those frames now.
+// The scene from above under that run. Throws InputError where it is not there any more, or does not give those frames
+// now.
 SceneView view_of(const RunResult& result, const std::string& store) {
   RunSpec spec = spec_of(result, {store});
   const Scene scene = load_scene(spec.scene);
@@ -54,7 +56,8 @@ SceneView view_of(const RunResult& result, const std::string& store) {
   return look_from_above(spec, scene);
 }
 
-// The run to look at in each scene, of those that kept their frames: the asked policy's, else the closest to its target.
+// The run to look at in each scene, of those that kept their frames: the asked policy's, else the closest to its
+// target.
 std::vector<const RunResult*> runs_to_view(std::span<const RunResult> results, const std::string& policy) {
   std::vector<const RunResult*> list;
   bool known = policy.empty();

@@ -154,7 +154,7 @@ std::string describe_run(const RunResult& r) {
   line("error", fmt::format("AvgErr {:.2f} %, bias {:+.2f} %, {:.1f} % of frames over the target", s.avg_err * 100,
                             s.bias * 100, s.over_target * 100));
   line("latency", fmt::format("mean {}", ms(s.latency_s)));
-  line("benefit", fmt::format("{:.1f} % of everything visible at its finest; {:.1f} level switches a frame",
+  line("benefit", fmt::format("{:.1f} % of the most that unlimited time could give; {:.1f} level switches a frame",
                               s.benefit_share * 100, s.switches));
   line("decision",
        fmt::format("{:.1f} operations a frame; estimator error {:.2f} %", s.operations, s.estimator_error * 100));

@@ -13,8 +13,8 @@
 namespace framesim {
 namespace {
 
-// Seeds that share their frames at a time: enough that the shared part costs little for each of them, few enough that their
-// records fit into memory.
+// Seeds that share their frames at a time: enough that the shared part costs little for each of them, few enough that
+// their records fit into memory.
 constexpr std::int64_t kBatch = 64;
 
 RunSpec with_seed(RunSpec spec, std::uint64_t seed) {

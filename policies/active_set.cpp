@@ -9,10 +9,10 @@
 // Round:         over the free items (not held at r_i) the optimum with the rest fixed is t_i = p a_i, a_i = w_i^2 /
 //                r_i, p from the sum: benefit' = 1 / (2 sqrt p) for all. Those below it go there, or to r_i and are
 //                held; those above give up what that takes beyond unspent money, each the same share of the way. Every
-//                bit of time goes from an item whose benefit' is lower than at p a_i to one whose is higher, so each round
-//                is feasible and not worse than the one before. If nobody met a bound, the free items are at their
-//                optimum, and those held whose multiplier has the wrong sign (p a_i < r_i) are let go; if there are
-//                none, it is everybody's (KKT). The textbook's round ends at the first bound met; here all who meet
+//                bit of time goes from an item whose benefit' is lower than at p a_i to one whose is higher, so each
+//                round is feasible and not worse than the one before. If nobody met a bound, the free items are at
+//                their optimum, and those held whose multiplier has the wrong sign (p a_i < r_i) are let go; if there
+//                are none, it is everybody's (KKT). The textbook's round ends at the first bound met; here all who meet
 //                theirs are held at once, as there may be thousands.
 // Anytime:       a round that would exceed `operations` is not begun: the result is the last one's. Reading the
 //                workload and writing the selection come on top, as nothing can be drawn without.

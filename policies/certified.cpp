@@ -1,22 +1,24 @@
 // certified: near the optimum with a proven bound, every frame, at any size.
 //
-// Source:        ours, from known parts: the Lagrangian dual of the multiple-choice knapsack (Everett 1963; Sinha and Zoltners
-//                1979), weighted selection (Balas and Zemel 1980), an expanding core (Pisinger 1995), adaptive conformal
-//                inference (Gibbs and Candes 2021).
-// What it does:  searches the multiplier at which the budget is spent, from last frame's: flat lists by vectorised passes
-//                (certified/flat_search.h), trees and curves by sweeps (certified/tree_search.h). Near-ties are decided together
-//                to use what is left, and lists of few items searched exactly
-//                (certified/small_exact.h). Selection::bound holds for every selection within the planner's budget, in floating
-//                point, whatever the parameters say.
+// Source:        ours, from known parts: the Lagrangian dual of the multiple-choice knapsack (Everett 1963; Sinha and
+//                Zoltners 1979), weighted selection (Balas and Zemel 1980), an expanding core (Pisinger 1995), adaptive
+//                conformal inference (Gibbs and Candes 2021).
+// What it does:  searches the multiplier at which the budget is spent, from last frame's: flat lists by vectorised
+//                passes (certified/flat_search.h), trees and curves by sweeps (certified/tree_search.h). Near-ties are
+//                decided together to use what is left, and lists of few items searched exactly
+//                (certified/small_exact.h). Selection::bound holds for every selection within the planner's budget, in
+//                floating point, whatever the parameters say.
 // Omitting:      with `none=true` "not drawn" is a level like others. Otherwise every item with levels is drawn if the
 //                cheapest levels fit together; if not, items may be left out in that frame. Curves may always go to 0.
-// Hysteresis:    an item's level of last frame, or a curve's rung of the stand-in ladder, counts with 1 + hysteresis of its benefit when levels are chosen, so a frame
-//                gives away at most that share of its benefit; costs are counted in full.
+// Hysteresis:    an item's level of last frame, or a curve's rung of the stand-in ladder, counts with 1 + hysteresis of
+//                its benefit when levels are chosen, so a frame gives away at most that share of its benefit; costs are
+//                counted in full.
 // Headroom:      with `miss-rate` below 100 % the budget is the planner's less a headroom learned from which frames
 //                were too long (certified/headroom.h); it may be more than the planner's where that is too careful.
-// Complexity:    O(levels) for flat lists, one pass in most frames; about 50 sweeps for trees. No allocation in steady state.
-// Known failure: with every item drawn the bound, which admits leaving items out, is not reached where a coarsest level is worth
-//                less than its cost. Moves inside one another are not combined at the end of a tree search.
+// Complexity:    O(levels) for flat lists, one pass in most frames; about 50 sweeps for trees. No allocation in steady
+//                state.
+// Known failure: with every item drawn the bound, which admits leaving items out, is not reached where a coarsest level
+//                is worth less than its cost. Moves inside one another are not combined at the end of a tree search.
 #include <optional>
 
 #include "policies/certified/flat_search.h"

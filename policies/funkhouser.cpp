@@ -3,25 +3,25 @@
 // Source:        Funkhouser and Séquin 1993, section 6. Maximise the sum of benefits with the sum of costs <= budget.
 //                An (object, level) pair is a tuple; its Value is benefit / cost.
 // Rules (parameter `rule`):
-//   printed      All tuples by falling Value (ties: item, level). Each is added in that order; of two tuples of one object the
-//                more beneficial stays. The first that does not fit ends it, since the text ends when the time is
-//                claimed [R]; `misfit=skip` goes on with the next. O(levels log levels).
-//   incremental  From last frame's levels (the lowest if not seen then): raise the object whose next level has the highest
-//                Value, then lower those whose present level has the lowest until the sum fits; ends when one object
-//                is raised and lowered in one round. O(log n) a round, few rounds from one frame to the next. With
-//                Values that fall from level to level it ends where `printed` does. Not proven to end otherwise,
+//   printed      All tuples by falling Value (ties: item, level). Each is added in that order; of two tuples of one
+//                object the more beneficial stays. The first that does not fit ends it, since the text ends when the
+//                time is claimed [R]; `misfit=skip` goes on with the next. O(levels log levels).
+//   incremental  From last frame's levels (the lowest if not seen then): raise the object whose next level has the
+//                highest Value, then lower those whose present level has the lowest until the sum fits; ends when one
+//                object is raised and lowered in one round. O(log n) a round, few rounds from one frame to the next.
+//                With Values that fall from level to level it ends where `printed` does. Not proven to end otherwise,
 //                so rounds are capped at 4 * levels + 16; with concave benefits the cap is not reached.
-//   repaired     From scratch on each object's upper concave hull (knapsack/hull_greedy.h): upgrades by falling gain / extra
-//                cost, misfits skipped, the best single upgrade compared, what is left given to any level that fits.
-//                At least half of the optimum. O(levels + n log n).
+//   repaired     From scratch on each object's upper concave hull (knapsack/hull_greedy.h): upgrades by falling gain /
+//                extra cost, misfits skipped, the best single upgrade compared, what is left given to any level that
+//                fits. At least half of the optimum. O(levels + n log n).
 //   stop-at-misfit  The same upgrades until the first that does not fit, and nothing after it, as renderers do [M]:
 //                with misfits skipped, what small upgrades find left over changes with every step of the camera, and
 //                their levels with it. What is drawn is the first part of one sequence: as long as the same objects
 //                must be drawn, more budget lowers no level. No bound from below: one dear upgrade ends it for all.
 // Omitting:      with `none=true` "not drawn" is a level like others. Otherwise every object gets at least its coarsest
 //                level (on hulls: its cheapest) if these fit together; if not, objects may be left out in that frame.
-// Known failure: `printed` and `incremental` have no bound: A = {(9,14),(12,18)}, B = {(36,81)} as (cost, benefit) and budget 20
-//                draw nothing, because B is first and does not fit, where A alone gives 18.
+// Known failure: `printed` and `incremental` have no bound: A = {(9,14),(12,18)}, B = {(36,81)} as (cost, benefit) and
+//                budget 20 draw nothing, because B is first and does not fit, where A alone gives 18.
 #include <algorithm>
 #include <utility>
 

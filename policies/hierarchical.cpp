@@ -1,31 +1,32 @@
 // hierarchical: increments and decrements of a cut through a tree of grouped representations.
 //
-// Source:        Mason and Blake 1997 (as told by Zach et al. 2002, section 2.1.2, and Robin Hood 2005, section 2.1): the
-//                multiple-choice knapsack extended to a hierarchy. An increment replaces a representation by its
-//                successors, a decrement the successors by the node that groups them. From last frame's cut, the increments of
-//                largest benefit over cost and the decrements of least are made until the budget is used.
+// Source:        Mason and Blake 1997 (as told by Zach et al. 2002, section 2.1.2, and Robin Hood 2005, section 2.1):
+//                the multiple-choice knapsack extended to a hierarchy. An increment replaces a representation by its
+//                successors, a decrement the successors by the node that groups them. From last frame's cut, the
+//                increments of largest benefit over cost and the decrements of least are made until the budget is used.
 // Rules (parameter `rule`):
-//   printed      Steps in a fixed order: level by level, then to the successors, each at its coarsest; a decrement is the
-//                inverse. incremental=true: the increment of largest value, then decrements of least value until the cost
-//                fits; ends when a node is raised and lowered in one round. incremental=false: increments from the
-//                coarsest cut until one does not fit.
-//   repaired     Any finer level, or the successors up to `depth` steps down: a node whose children gain nothing, or little, is
-//                opened for its grandchildren. A level or group that gains at no cost is taken whatever its place. An
-//                increment that does not fit gives way to the node's best one that does; without one it is tried against
-//                decrements elsewhere, and kept if the benefit rises, else undone. So benefit rises with each round, which
-//                ends it; misfits block nothing; no step is made and unmade. Tries that fail may take `effort` times the
-//                operations of setting up, and 1000: the decision's own time must not eat what it gains. Then only what
-//                fits is taken, down to the last hundredth of the budget.
-// Guarantee:     repaired from scratch, where values fall from step to step along every path, depth = 1 and effort without
-//                limit: at least half of the most that a cut can gain over the coarsest. The increments before the first
-//                misfit that fits at all, and that misfit together, are no less than the linear relaxation; the better of the
-//                two is kept. Printed: none, one large misfit ends it (its test: 0 of a gain of 9).
+//   printed      Steps in a fixed order: level by level, then to the successors, each at its coarsest; a decrement is
+//                the inverse. incremental=true: the increment of largest value, then decrements of least value until
+//                the cost fits; ends when a node is raised and lowered in one round. incremental=false: increments from
+//                the coarsest cut until one does not fit.
+//   repaired     Any finer level, or the successors up to `depth` steps down: a node whose children gain nothing, or
+//                little, is opened for its grandchildren. A level or group that gains at no cost is taken whatever its
+//                place. An increment that does not fit gives way to the node's best one that does; without one it is
+//                tried against decrements elsewhere, and kept if the benefit rises, else undone. So benefit rises with
+//                each round, which ends it; misfits block nothing; no step is made and unmade. Tries that fail may take
+//                `effort` times the operations of setting up, and 1000: the decision's own time must not eat what it
+//                gains. Then only what fits is taken, down to the last hundredth of the budget.
+// Guarantee:     repaired from scratch, where values fall from step to step along every path, depth = 1 and effort
+//                without limit: at least half of the most that a cut can gain over the coarsest. The increments before
+//                the first misfit that fits at all, and that misfit together, are no less than the linear relaxation;
+//                the better of the two is kept. Printed: none, one large misfit ends it (its test: 0 of a gain of 9).
 // Coherence:     a node that was in last frame's tree keeps its state, others start at their coarsest level.
 // Omitting:      only in frames in which not even the coarsest cut fits may top nodes be left out.
 // Curves:        as levels (the scene's stand-ins): the source knows discrete representations only.
 // Flat scenes:   every item is a tree of one node; what is left is the increments of levels.
-// Complexity:    k nodes in the cut: O(k log k) to start from last frame's, from scratch O(n log n) for n nodes at and above the
-//                cut; O(log k) a step. Fan-out and levels are taken as constants. Rounds are capped at 4 * levels + 64.
+// Complexity:    k nodes in the cut: O(k log k) to start from last frame's, from scratch O(n log n) for n nodes at and
+//                above the cut; O(log k) a step. Fan-out and levels are taken as constants. Rounds are capped at 4 *
+//                levels + 64.
 // Known failure: a step that pays only `depth` + 1 steps further down is not seen. From last frame's cut there is no
 //                guarantee: where values do not fall it may stay in a local optimum that a start from scratch avoids.
 #include <algorithm>

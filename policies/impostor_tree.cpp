@@ -1,21 +1,22 @@
 // impostor-tree: top-down over a tree of impostors, every visible object covered by itself or by one above it.
 //
-// Source:        Maciel and Shirley 1995 (known here from its abstract and from Robin Hood 2005, section 2.1, and Zach et al.
-//                2002, section 2.1.2): the scene is one tree of levels of detail. Pass 1 covers everything with the coarsest
-//                impostors. Pass 2 goes best first: the node drawn that is worth most is replaced by its next finer level,
-//                at its finest by its visible children; where the time does not allow that, it stays for good. A heuristic
-//                without a bound.
+// Source:        Maciel and Shirley 1995 (known here from its abstract and from Robin Hood 2005, section 2.1, and Zach
+//                et al. 2002, section 2.1.2): the scene is one tree of levels of detail. Pass 1 covers everything with
+//                the coarsest impostors. Pass 2 goes best first: the node drawn that is worth most is replaced by its
+//                next finer level, at its finest by its visible children; where the time does not allow that, it stays
+//                for good. A heuristic without a bound.
 // Order:         `order=benefit` is the source's. `order=value` takes what gains most for its extra cost first.
-// Repaired:      a step must gain (`descend=gain`): the source's benefits grow downwards by construction, those of others
-//                need not where a node has few visible children. `descend=always` goes on all the same [R].
+// Repaired:      a step must gain (`descend=gain`): the source's benefits grow downwards by construction, those of
+//                others need not where a node has few visible children. `descend=always` goes on all the same [R].
 //                Pass 1 takes the cheapest cut where the coarsest does not fit.
 // Covering:      if not even the cheapest cut fits it is drawn nevertheless, over budget: nothing is left out.
 // Curves:        as levels (the scene's stand-ins). A bundle is no impostor: its children are always in its place.
-// Flat scenes:   a forest of roots: the item of largest benefit goes up level by level until it is at its finest or does
-//                not fit.
+// Flat scenes:   a forest of roots: the item of largest benefit goes up level by level until it is at its finest or
+//                does not fit.
 // Complexity:    O(n log n): a heap entry a node drawn. The cheapest cut O(n).
-// Known failure: with order=benefit the objects that cover the screen take all they can before others get anything, whatever it
-//                costs; nothing ever goes back up. Unlike Mason and Blake's there is no coherence from frame to frame.
+// Known failure: with order=benefit the objects that cover the screen take all they can before others get anything,
+//                whatever it costs; nothing ever goes back up. Unlike Mason and Blake's there is no coherence from
+//                frame to frame.
 #include <algorithm>
 #include <utility>
 

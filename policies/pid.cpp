@@ -10,8 +10,8 @@
 //                threshold <- clamp( threshold / (1 + out), min, max ) for out >= 0, threshold * (1 - out) for out < 0
 //                "Velocity" control: out changes the threshold, so with out = 0 it stays, and kp alone leaves no steady
 //                error but the dead band's; I is what gets it out of that. After a frame whose threshold was clamped I
-//                is frozen for one update, so it does not wind up while nothing can be done; but not while e calls for the
-//                way back and ki I outweighs it, or the threshold would stay at its bound for ever.
+//                is frozen for one update, so it does not wind up while nothing can be done; but not while e calls for
+//                the way back and ki I outweighs it, or the threshold would stay at its bound for ever.
 // Defaults:      Filament's: rate 1/8 (1/N: N frames to 64 % of a change), ki 0.002, kd 0, dead band -0.01 to 0.05,
 //                limit 100, headroom 0, history 15 (at least 3 frames before anything is done). Its range is 1/4 to 1
 //                of the pixels; that of a size threshold is ours.

@@ -42,8 +42,8 @@ void ItemWriter::make_room(std::size_t items) {
   subtree_end_ = sized(w.subtree_end, tree_, items);
 }
 
-// In steps, so that a frame with a few items more than the last does not fill columns with zeros to no purpose; but up to
-// the memory that is there, so that nothing is allocated once the largest frame has been met.
+// In steps, so that a frame with a few items more than the last does not fill columns with zeros to no purpose; but up
+// to the memory that is there, so that nothing is allocated once the largest frame has been met.
 void ItemWriter::grow() {
   const std::size_t there = std::min(workload_->id.capacity(), workload_->level_begin.capacity() - 1);
   const std::size_t more = room_ + room_ / 4 + std::size_t{64};

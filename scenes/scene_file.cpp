@@ -31,8 +31,8 @@ Screen read_screen(const TableReader& root) {
   const TableReader table(root.document(), *node, "[screen]", {"width", "height", "fov_y", "near", "far"});
   screen.width = static_cast<int>(table.whole("width", 1, 65'536, screen.width));
   screen.height = static_cast<int>(table.whole("height", 1, 65'536, screen.height));
-  // Half a degree short of flat: the tangent of half the angle stays below 230. Divided first, as degrees are read, so that
-  // '179.5deg' itself is allowed.
+  // Half a degree short of flat: the tangent of half the angle stays below 230. Divided first, as degrees are read, so
+  // that '179.5deg' itself is allowed.
   const Range angles{0, 179.5 / 180 * std::numbers::pi, true};
   screen.fov_y_rad = table.angle_rad("fov_y", angles, screen.fov_y_rad);
   screen.near_m = table.length_m("near", kLength, screen.near_m);

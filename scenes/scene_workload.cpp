@@ -37,8 +37,8 @@ Facts stand_in(const ObjectType& type, double x) {
   return facts;
 }
 
-// What a frame needs of one instance, side by side: where only a few of many are visible, each costs a cache line or two,
-// and not one in every column of the scene.
+// What a frame needs of one instance, side by side: where only a few of many are visible, each costs a cache line or
+// two, and not one in every column of the scene.
 struct Row {
   glm::dvec3 centre{0};
   float radius_m = 0, area_m2 = 0;
@@ -252,7 +252,8 @@ class SceneWorkload final : public WorkloadSource {
     }
   }
 
-  // A node at flat_depth, or above it with nothing visible below, is a block; nodes between it and the top are passed by.
+  // A node at flat_depth, or above it with nothing visible below, is a block; nodes between it and the top are passed
+  // by.
   void fill_blocks(Workload& workload) {
     const std::vector<std::uint32_t>& subtree_end = scene_.instances.subtree_end;
     for (std::size_t i = 0; i < rows_.size();) {

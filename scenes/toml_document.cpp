@@ -8,10 +8,10 @@
 #include "scenes/text_file.h"
 #include "sim/words.h"
 
-// The parser's assertions become exceptions, in all builds: input must not abort the program, and with NDEBUG the library
-// would have the compiler *assume* them. Two of them are wrong in version 3.3: a table header may begin with a character
-// that begins no key, "[=]", and an item of a list with one that ends a value, "[}". They are passed over; a few lines
-// on the parser itself refuses those characters, with their place.
+// The parser's assertions become exceptions, in all builds: input must not abort the program, and with NDEBUG the
+// library would have the compiler *assume* them. Two of them are wrong in version 3.3: a table header may begin with a
+// character that begins no key, "[=]", and an item of a list with one that ends a value, "[}". They are passed over; a
+// few lines on the parser itself refuses those characters, with their place.
 namespace framesim::detail {
 struct TomlAssertion {
   const char* condition;
@@ -77,8 +77,8 @@ TomlNode convert(const toml::node& node) {
 }
 
 // The library limits the depth of lists and inline tables, but not of dotted keys, and it frees tables recursively: a
-// line "a.a.a.a..." of a megabyte would overflow the stack. Outside of strings, single dots that no comma, bracket, brace
-// or '=' parts are one number or one key.
+// line "a.a.a.a..." of a megabyte would overflow the stack. Outside of strings, single dots that no comma, bracket,
+// brace or '=' parts are one number or one key.
 constexpr int kMostDotsInKey = 256;
 
 void refuse_deep_keys(std::string_view text, const std::string& file) {

@@ -14,8 +14,9 @@ Facts with_triangles(const Facts& finest, double share) {
   return facts;
 }
 
-// Section 6.1: widths are tried thin to thick and a cylinder becomes a line of the first width w with its projected diameter
-// below 3w/2. With w as the largest width that is every cylinder below 3w/2, and the thicker ones stay triangles.
+// Section 6.1: widths are tried thin to thick and a cylinder becomes a line of the first width w with its projected
+// diameter below 3w/2. With w as the largest width that is every cylinder below 3w/2, and the thicker ones stay
+// triangles.
 Facts trunk_level(const ViewLevels& levels, const Facts& finest, double px_per_m, int width_px) {
   const auto& diameters = levels.cylinder_diameter_m;
   const double limit_m = 1.5 * width_px / px_per_m;
@@ -27,8 +28,8 @@ Facts trunk_level(const ViewLevels& levels, const Facts& finest, double px_per_m
   return facts;
 }
 
-// Section 6.2, for one group of n leaves, times the groups. A group that covers less than a point of this size still shows
-// one point: a tree seen from afar keeps its crown.
+// Section 6.2, for one group of n leaves, times the groups. A group that covers less than a point of this size still
+// shows one point: a tree seen from afar keeps its crown.
 Facts leaves_level(const ViewLevels& levels, const Facts& finest, double px_per_m, int width_px) {
   const double n = levels.leaves_per_group;
   const double group_px = n * levels.leaf_area_m2 / levels.facing_factor * px_per_m * px_per_m;

@@ -88,8 +88,8 @@ void BenefitScorer::score(Workload& workload) {
   }
 }
 
-// False where another formula is needed. Accuracy rises with the samples, in floating point too, so that the one with the
-// fewer samples, all of them or as many as there are pixels, is the lower one: one division an item, none a level.
+// False where another formula is needed. Accuracy rises with the samples, in floating point too, so that the one with
+// the fewer samples, all of them or as many as there are pixels, is the lower one: one division an item, none a level.
 bool BenefitScorer::score_plain(Workload& workload, std::size_t item) const {
   const std::size_t first = workload.facts_begin[item], count = workload.levels(item);
   if (workload.type_of(item).benefit != BenefitModel::funkhouser || first + count > levels_.size()) return false;

@@ -32,7 +32,8 @@ double most_benefit(const Workload& workload, std::size_t item) {
   return most;
 }
 
-// Drawn items by fineness. Each limit is counted apart, without a branch: which bin an item falls into cannot be guessed.
+// Drawn items by fineness. Each limit is counted apart, without a branch: which bin an item falls into cannot be
+// guessed.
 struct Mix {
   std::int64_t drawn = 0, a_third = 0, two_thirds = 0, whole = 0;
 
@@ -79,9 +80,9 @@ void PictureRecorder::record_flat(const Workload& workload, const Selection& sel
   mix.write(record);
 }
 
-// The benefit of the best cut. A node can be worth more than what is below it: it stands for leaves too that are culled as too
-// small to see, and the benefit of a group of trees is no sum over its trees. Children come before their parent; then the cut
-// is summed from the top.
+// The benefit of the best cut. A node can be worth more than what is below it: it stands for leaves too that are culled
+// as too small to see, and the benefit of a group of trees is no sum over its trees. Children come before their parent;
+// then the cut is summed from the top.
 double PictureRecorder::best_cut(const Workload& workload) {
   const std::size_t n = workload.size();
   most_.resize(n);

@@ -113,8 +113,8 @@ void PipelineState::schedule_next_job() {
   if (const auto arrival = client_.next_arrival(events_.now())) events_.schedule(*arrival, Phase::job_arrives, 0);
 }
 
-// Between commands: once no stage works on a command of the oldest frame. Where it is at all in the per-pixel stage, that
-// stage has its oldest command.
+// Between commands: once no stage works on a command of the oldest frame. Where it is at all in the per-pixel stage,
+// that stage has its oldest command.
 bool PipelineState::job_may_start() {
   if (!client_.between_commands()) return true;
   if (pixel_.state == Server::works) return false;

@@ -38,7 +38,8 @@ CommandRing::CommandRing(const MachineProfile& machine) {
   mask_ = slots_.size() - 1;
 }
 
-// Frames: the newest, as many as may be in flight before it, and the one before those, whose time the display may ask for.
+// Frames: the newest, as many as may be in flight before it, and the one before those, whose time the display may ask
+// for.
 PipelineState::PipelineState(const MachineProfile& machine, CommandRing& ring, PipelineLog* log)
     : ring_(&ring),
       log_(log),
@@ -194,7 +195,8 @@ void PipelineState::finish_pixels() {
   events_.schedule(offered, Phase::frame_shown, static_cast<std::uint64_t>(command.frame));
 }
 
-// The display takes the frame, or with vsync sends it to a later blank: the frame before comes first, one period earlier.
+// The display takes the frame, or with vsync sends it to a later blank: the frame before comes first, one period
+// earlier.
 void PipelineState::offer(std::int64_t number) {
   Frame& shown = frame(number);
   if (shown.vsync_period.count() > 0 && number > 0) {

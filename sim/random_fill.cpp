@@ -1,5 +1,6 @@
-// RandomStream::fill: many Philox blocks at once, for whatever vector registers the processor has (Google Highway compiles
-// this file once for each kind and chooses when it runs). Integers only, so that all of them give the same words.
+// RandomStream::fill: many Philox blocks at once, for whatever vector registers the processor has (Google Highway
+// compiles this file once for each kind and chooses when it runs). Integers only, so that all of them give the same
+// words.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/random_fill.cpp"
 #include <hwy/foreach_target.h>

@@ -14,7 +14,8 @@ bool has_bus_or_client(const MachineProfile& machine) {
   return machine.bus.chunk.count() > 0 || machine.client.period.count() > 0;
 }
 
-// An effect that each seed has for itself: it acts on the frame's settings, or varies times by its seed. All others act once.
+// An effect that each seed has for itself: it acts on the frame's settings, or varies times by its seed. All others act
+// once.
 bool is_own(const Effect& effect) { return has(effect.hooks(), Hook::frame) || effect.seed_use() == SeedUse::times; }
 
 std::optional<std::string> obstacle(const Effect& effect) {

@@ -141,8 +141,9 @@ void Simulation::decide() {
   if (config_.bound) find_bound();
 }
 
-// How good the frame could have been, on what the policy was given: within the planner's budget if decisions took no time, so
-// that a slow decision is a loss; or within what the selection costs, where that is more, as more can be had for more.
+// How good the frame could have been, on what the policy was given: within the planner's budget if decisions took no
+// time, so that a slow decision is a loss; or within what the selection costs, where that is more, as more can be had
+// for more.
 void Simulation::find_bound() {
   const FrameBound bound = bound_.compute(workload_, std::max(plan_budget(0), record_.planned_cost_s));
   record_.bound = bound.benefit;

@@ -14,8 +14,8 @@
 namespace framesim {
 namespace {
 
-// An edge leads from a node to one that it waits for. That way round, the order in which a depth-first search leaves the
-// nodes is a topological order, and it meets nodes in order of declaration.
+// An edge leads from a node to one that it waits for. That way round, the order in which a depth-first search leaves
+// the nodes is a topological order, and it meets nodes in order of declaration.
 using WaitsFor = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
 
 WaitsFor make_graph(const std::vector<std::vector<int>>& predecessors) {

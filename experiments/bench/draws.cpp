@@ -1,5 +1,5 @@
-// Counts random draws without a counter in the simulator: the linker (--wrap, CMakeLists.txt) leads every call of a method
-// of RandomStream from another file through here. `this` is the first argument of a method (Itanium C++ ABI).
+// Counts random draws without a counter in the simulator: the linker (--wrap, CMakeLists.txt) leads every call of a
+// method of RandomStream from another file through here. `this` is the first argument of a method (Itanium C++ ABI).
 #include "experiments/bench/draws.h"
 
 #include "sim/random_stream.h"

@@ -65,8 +65,8 @@ BENCHMARK(tandem_events)->Name("tandem/event-engine")->Unit(benchmark::kMillisec
 void tandem_recurrence(benchmark::State& state) { tandem_engine<StagedRecurrence>(state, "recurrence"); }
 BENCHMARK(tandem_recurrence)->Name("tandem/recurrence")->Unit(benchmark::kMillisecond);
 
-// A thousand frames of a thousand of these commands, two in flight: what the checkpoint in each of them costs, which with
-// one in flight there is none of.
+// A thousand frames of a thousand of these commands, two in flight: what the checkpoint in each of them costs, which
+// with one in flight there is none of.
 void tandem_frames(benchmark::State& state) {
   constexpr std::size_t kCommands = 1000;
   const TandemTimes& times = tandem_times();

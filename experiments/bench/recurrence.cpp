@@ -179,8 +179,8 @@ BENCHMARK(on_a_copy<false>)
     ->Name("recurrence/vsync+2-in-flight+columns-copied+statistics")
     ->Unit(benchmark::kMicrosecond);
 
-// Eight seeds of a scene: the same commands, each seed with jitter of its own. So few frames that all seeds' columns fit
-// in a L2 cache, one by one and side by side alike.
+// Eight seeds of a scene: the same commands, each seed with jitter of its own. So few frames that all seeds' columns
+// fit in a L2 cache, one by one and side by side alike.
 constexpr std::size_t kSeedFrames = 2;
 using SeedColumns = std::array<CommandColumns, kLanes>;
 

@@ -83,8 +83,8 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// 1,000 visible instances and more and more that are not. Steps of the three scenes take turns and the median of each is
-// told, so that whatever disturbs the machine disturbs all three.
+// 1,000 visible instances and more and more that are not. Steps of the three scenes take turns and the median of each
+// is told, so that whatever disturbs the machine disturbs all three.
 void culled(benchmark::State& state, bool mixed) {
   constexpr std::size_t kVisible = 1000;
   constexpr std::array<std::size_t, 3> kHidden = {250'000, 500'000, 1'000'000};

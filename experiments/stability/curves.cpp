@@ -62,16 +62,16 @@ void add_cost_and_benefit(std::vector<StabilityRow>& rows) {
     }
   });
   const char* const group = "curves, setup 0 to 1 - 1e-9 of the cost";
-  // Each of the two terms, which have one sign, is wrong by eps at most (x/knee and the product; the rest and the product),
-  // their sum by eps/2 more.
+  // Each of the two terms, which have one sign, is wrong by eps at most (x/knee and the product; the rest and the
+  // product), their sum by eps/2 more.
   rows.push_back(make_row(group, "cost of a resolution", "", 1.5, cost, none));
   // The root and the product.
   rows.push_back(make_row(group, "benefit w sqrt(x)", "", 1, benefit, none));
 }
 
 // curve_resolution must not go over the cost it is given, as curve_cost_s computes it, so that it steps down from the
-// quotient (wrong by 3 eps/2) until that holds, which it does from 3 eps/2 of the cost below it on, at most one step of eps
-// further. A relative error of the cost weighs c / (c - setup) above the knee, and 1 below.
+// quotient (wrong by 3 eps/2) until that holds, which it does from 3 eps/2 of the cost below it on, at most one step of
+// eps further. A relative error of the cost weighs c / (c - setup) above the knee, and 1 below.
 void add_inverse(std::vector<StabilityRow>& rows) {
   OneCurve curve;
   ErrorCollector ours, none;

@@ -42,9 +42,10 @@ void add_coefficients(std::vector<StabilityRow>& rows, std::int64_t apart, const
   ours.add(fit.c2, 5);
   pairs.add(printed.c1, 3);
   pairs.add(printed.c2, 5);
-  // Orthogonalised m x n equations without residual: matrix and right-hand side as if each were wrong by m n eps/2 (Higham
-  // 2002, theorem 20.3), which the condition multiplies; the roundings add up as random ones do, sqrt(m n) eps/2 (Higham and
-  // Mary 2019). m = 8, n = 2; c1 and c2 are a half or more of the solution's length: 2 * 4 eps/2 * 2 = 8 eps conditions.
+  // Orthogonalised m x n equations without residual: matrix and right-hand side as if each were wrong by m n eps/2
+  // (Higham 2002, theorem 20.3), which the condition multiplies; the roundings add up as random ones do, sqrt(m n)
+  // eps/2 (Higham and Mary 2019). m = 8, n = 2; c1 and c2 are a half or more of the solution's length: 2 * 4 eps/2 * 2
+  // = 8 eps conditions.
   rows.push_back(make_row(group, "c1, c2 (least squares)", "mean over pairs (Dong eq. 7, 8)", 8 * condition_of(samples),
                           ours, pairs));
 }

@@ -87,9 +87,9 @@ void measure(const Points& p, const std::vector<std::size_t>& hull, ErrorCollect
 
 }  // namespace
 
-// Both products of the test round three times (two differences and itself), so that it can be wrong only where they differ
-// by less than 6 eps/2: then the point is within 3 eps of the line, measured by the line's height over its begin. Of up to 8
-// levels each can add one such error to those of the corners it was tested against: 24 eps.
+// Both products of the test round three times (two differences and itself), so that it can be wrong only where they
+// differ by less than 6 eps/2: then the point is within 3 eps of the line, measured by the line's height over its
+// begin. Of up to 8 levels each can add one such error to those of the corners it was tested against: 24 eps.
 void add_hull_rows(std::vector<StabilityRow>& rows) {
   ErrorCollector ours, area;
   for (const double base : {0.0, 1e-6, 1.0, 1e6}) {

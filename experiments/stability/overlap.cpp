@@ -10,8 +10,8 @@
 namespace framesim {
 namespace {
 
-// T = max + s*min to the nearest picosecond, halves up. Products of 8.7 s (2^43 ps) and less are known to 2^-11 ps, and with
-// these shares none lies so near to half a picosecond without being it: exactly 0.
+// T = max + s*min to the nearest picosecond, halves up. Products of 8.7 s (2^43 ps) and less are known to 2^-11 ps, and
+// with these shares none lies so near to half a picosecond without being it: exactly 0.
 void add_overlap(std::vector<StabilityRow>& rows) {
   ErrorCollector ours, naive;
   for (const double s : {0.0, 0.25, 1.0 / 3, 0.5, 0.75, 1.0}) {
@@ -41,8 +41,8 @@ double by_comparison_s(double t_l, double t_f, double s) {
   return longer >= t_l ? longer : (t_f - t_l) / s;
 }
 
-// t_r of max + s*min = t_f. Where drawing is the longer, t_f - s*t_l is at least s*t_l: product and difference, eps. Else
-// (t_f - t_l) / s: difference and quotient, eps. The smaller of the two is the right one.
+// t_r of max + s*min = t_f. Where drawing is the longer, t_f - s*t_l is at least s*t_l: product and difference, eps.
+// Else (t_f - t_l) / s: difference and quotient, eps. The smaller of the two is the right one.
 void add_inverse(std::vector<StabilityRow>& rows) {
   ErrorCollector ours, comparison;
   for (const double share : {0.02, 0.25, 1.0 / 3, 0.5, 1.0}) {
@@ -61,8 +61,8 @@ void add_inverse(std::vector<StabilityRow>& rows) {
                           "the form that a comparison chooses", 1, ours, comparison));
 }
 
-// Robin Hood's rule as printed: l = (t_l/t_f)^2 is wrong by 3 eps/2, rho = 1 - l by that times l/rho and eps/2, rho^2 * t_f by
-// twice as much and eps: 3 l/rho + 2 eps. With condition 1 + 2 l/rho: 2 eps.
+// Robin Hood's rule as printed: l = (t_l/t_f)^2 is wrong by 3 eps/2, rho = 1 - l by that times l/rho and eps/2, rho^2 *
+// t_f by twice as much and eps: 3 l/rho + 2 eps. With condition 1 + 2 l/rho: 2 eps.
 void add_printed_rule(std::vector<StabilityRow>& rows) {
   ErrorCollector ours, none;
   for (const double target_s : {0.001, 0.016, 1.0 / 60, 0.2}) {

@@ -60,8 +60,9 @@ void add_robin_hood(std::vector<StabilityRow>& rows) {
     ours.add(suffix[i], expected);
     naive.add(printed[i], expected);
   }
-  // Sum, price and product round once each: 3 eps/2. The sum of all may thus pass the budget by 2 eps of it; the largest
-  // share, two fifths of the budget or more, is lowered by that, and by twice a last place where taking it off rounds: 10 eps.
+  // Sum, price and product round once each: 3 eps/2. The sum of all may thus pass the budget by 2 eps of it; the
+  // largest share, two fifths of the budget or more, is lowered by that, and by twice a last place where taking it off
+  // rounds: 10 eps.
   rows.push_back(make_row("robin-hood, values over 24 orders", "time of an instance (suffix sums)",
                           "sums=printed: by subtraction", 11.5, ours, naive));
 }

@@ -13,8 +13,8 @@ namespace {
 
 Exact density(const Exact& y) { return exp(Exact(-y * y / 2)) / sqrt(2 * boost::math::constants::pi<Exact>()); }
 
-// P(Z < -y) for y >= 0: 1/2 - density * sum of y^(2k+1) / (1*3*..*(2k+1)), whose terms have one sign (Marsaglia 2004). Of 50
-// digits 16 are lost at 2^-54.
+// P(Z < -y) for y >= 0: 1/2 - density * sum of y^(2k+1) / (1*3*..*(2k+1)), whose terms have one sign (Marsaglia 2004).
+// Of 50 digits 16 are lost at 2^-54.
 Exact tail(const Exact& y) {
   Exact term = y, sum = y;
   for (int k = 1; term > sum * Exact(1e-50); ++k) {
@@ -65,8 +65,8 @@ void add_normal(std::vector<StabilityRow>& rows) {
     ours.add(z, expected);
     naive.add(short_quantile(p), expected);
   }
-  // Wichura states 1e-16 for the approximation, 0.5 eps. In double: two polynomials of degree 7 with terms of one sign, 7.5
-  // eps each with their rounded coefficients; quotient and product, 1 eps; their argument by log and root, 1.5 eps.
+  // Wichura states 1e-16 for the approximation, 0.5 eps. In double: two polynomials of degree 7 with terms of one sign,
+  // 7.5 eps each with their rounded coefficients; quotient and product, 1 eps; their argument by log and root, 1.5 eps.
   rows.push_back(make_row("probabilities 2^-54 to 1 - 2^-53", "normal quantile (AS 241)",
                           "26.2.23 of Abramowitz and Stegun", 18, ours, naive));
 }

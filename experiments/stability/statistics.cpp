@@ -66,13 +66,15 @@ void add_moments(std::vector<StabilityRow>& rows) {
     naive_deviation.add(deviation_by_squares(x), r.deviation);
   }
   const char* const group = "2 to 20,000 frames of 16.67 ms +- 50 ns";
-  // A compensated sum of values of one sign is its exact sum rounded once (eps/2; its n^2 eps^2 is nothing here), and the
-  // division rounds once more: 1 eps. A running mean rounds every time: e_k = e_(k-1) (1 - 1/k) + eps/2, so (n+1)/4 eps.
+  // A compensated sum of values of one sign is its exact sum rounded once (eps/2; its n^2 eps^2 is nothing here), and
+  // the division rounds once more: 1 eps. A running mean rounds every time: e_k = e_(k-1) (1 - 1/k) + eps/2, so (n+1)/4
+  // eps.
   rows.push_back(make_row(group, "mean of moments (Neumaier)", "running mean (Welford)", 1, mean, running));
   rows.push_back(make_row(group, "mean, as in tables (Neumaier)", "sum / n", 1, table_mean, naive_mean));
-  // Two values d apart: S = d * (x_2 - mean), where the mean is rounded to eps/2 of 16.67 ms, so that the deviation is wrong
-  // by eps/2 * 16.67 ms / d; the first two are 48.3 ns apart: 1.73e5 eps. With more, errors of the running mean, random
-  // with deviation sqrt(k)/3 * eps/2 of it after k, add up to 1/sqrt(18) of eps/2 * mean / deviation whatever n: 7e4 eps.
+  // Two values d apart: S = d * (x_2 - mean), where the mean is rounded to eps/2 of 16.67 ms, so that the deviation is
+  // wrong by eps/2 * 16.67 ms / d; the first two are 48.3 ns apart: 1.73e5 eps. With more, errors of the running mean,
+  // random with deviation sqrt(k)/3 * eps/2 of it after k, add up to 1/sqrt(18) of eps/2 * mean / deviation whatever n:
+  // 7e4 eps.
   rows.push_back(make_row(group, "deviation (Welford)", "E[x^2] - mean^2", 2e5, deviation, naive_deviation));
 }
 

@@ -129,8 +129,8 @@ Database::Database(const std::string& path, Open how) : path_(path) {
   if (std::filesystem::is_directory(path, ignored)) throw InputError({path}, "is a folder, not a store");
   if (how != Open::create && !std::filesystem::exists(path, ignored)) throw InputError({path}, "there is no such file");
   if (is_foreign(path)) throw InputError({path}, reason(SQLITE_NOTADB, ""));
-  // Reading too, as only who may write takes SQLite's helper files away again at the end. A file that may not be written is
-  // opened for reading by itself.
+  // Reading too, as only who may write takes SQLite's helper files away again at the end. A file that may not be
+  // written is opened for reading by itself.
   open(path, SQLITE_OPEN_READWRITE | (how == Open::create ? SQLITE_OPEN_CREATE : 0));
   try {
     if (how == Open::read_only) run("PRAGMA query_only = ON");

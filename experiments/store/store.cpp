@@ -130,8 +130,8 @@ Store Store::begin(const std::string& path, const StoreIdentity& identity, const
                                          "another file",
                                          store.database_.whole("SELECT count(*) FROM run")));
   }
-  // WAL: a run is appended by one write, readers do not wait, and a killed program leaves nothing half written. NORMAL: after
-  // a loss of power the last runs may be missing, never damaged; --resume makes them again.
+  // WAL: a run is appended by one write, readers do not wait, and a killed program leaves nothing half written. NORMAL:
+  // after a loss of power the last runs may be missing, never damaged; --resume makes them again.
   store.database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON");
   if (fresh) store.create(identity);
   const StoreIdentity there = store.identity();

@@ -51,7 +51,8 @@ std::string failures(const WorkDiagram& diagram) {
   return text;
 }
 
-// The price of a digit, panel by panel: the cheapest way to each power of ten, and how many times dearer than the one before.
+// The price of a digit, panel by panel: the cheapest way to each power of ten, and how many times dearer than the one
+// before.
 std::string digits_table(const WorkDiagram& diagram, bool counted) {
   std::string text =
       fmt::format("| panel | error at most | {} | times the digit before | by |\n|---|--:|--:|--:|---|\n",

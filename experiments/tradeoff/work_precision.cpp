@@ -53,7 +53,8 @@ std::vector<std::string> methods_of(const WorkDiagram& diagram) {
   return methods;
 }
 
-// Two blocks a method: filled points, then those at the floor. A gap is an empty line. "NaN" keeps a block from being empty.
+// Two blocks a method: filled points, then those at the floor. A gap is an empty line. "NaN" keeps a block from being
+// empty.
 std::string panel_data(const WorkDiagram& diagram, const WorkPanel& panel, std::size_t index,
                        const std::vector<std::string>& methods, bool counted) {
   std::string data;

@@ -42,8 +42,8 @@ Bracket BracketSearch::around(double multiplier, double width) const {
   return {multiplier / factor, std::min(multiplier * factor, kLargestMultiplier)};
 }
 
-// Large lists only: for small ones a pass costs no more than looking. At either side of last frame's multiplier: where items tie
-// at it, what is spent there can be anything.
+// Large lists only: for small ones a pass costs no more than looking. At either side of last frame's multiplier: where
+// items tie at it, what is spent there can be anything.
 bool BracketSearch::looks_cut(Found& found) const {
   const std::size_t stride = stride_for(columns_->size(), kPeek);
   if (stride < 4) return false;
@@ -56,8 +56,8 @@ bool BracketSearch::looks_cut(Found& found) const {
   return multiplier_ > 0 ? low_s < limit_s : low_s > limit_s;
 }
 
-// Encloses the multiplier on a sample, from `start` outwards, and cuts the interval in three until it is as narrow as the
-// sample is exact, or narrow enough.
+// Encloses the multiplier on a sample, from `start` outwards, and cuts the interval in three until it is as narrow as
+// the sample is exact, or narrow enough.
 Bracket BracketSearch::search_sample(Found& found, std::size_t stride, Bracket start, double narrow) const {
   double whole = 1;
   const auto look = [&](const Bracket& bracket) {

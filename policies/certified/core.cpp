@@ -33,8 +33,8 @@ void Core::extend(const Move* first, const Move* last, double room_s, double mul
   }
 }
 
-// Drops states that cannot become the best: those that have lost too much, those too dear for what later groups can save,
-// and those that cost no less than another and are worth no more. Of the rest, those that have lost most.
+// Drops states that cannot become the best: those that have lost too much, those too dear for what later groups can
+// save, and those that cost no less than another and are worth no more. Of the rest, those that have lost most.
 void Core::prune(double room_s, double multiplier, double savings_s, std::size_t most_states) {
   const auto state = [&](std::int32_t s) -> const State& { return states_[static_cast<std::size_t>(s)]; };
   std::erase_if(front_,

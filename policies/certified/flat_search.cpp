@@ -23,8 +23,9 @@ constexpr double kTied = 1 + 1e-6;
 // A bracket wider than this is too coarse to work out the bound from the sums at its end.
 constexpr double kWideBracket = 4;
 
-// Rounding of the bound's terms and sums, relative to the sum of their magnitudes: an item's own value rounds twice, and so
-// may that of a level which wrongly seemed no better (its cost is worth no more than its benefit, or it could not seem so).
+// Rounding of the bound's terms and sums, relative to the sum of their magnitudes: an item's own value rounds twice,
+// and so may that of a level which wrongly seemed no better (its cost is worth no more than its benefit, or it could
+// not seem so).
 constexpr double kBoundError = kSumError + 24 * 0x1p-53;
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-// Compiled once for each instruction set that the compiler knows, and picked at run time. Multiplication and subtraction
-// stay apart: a fused multiply-add would give other bits where there is one.
+// Compiled once for each instruction set that the compiler knows, and picked at run time. Multiplication and
+// subtraction stay apart: a fused multiply-add would give other bits where there is one.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "policies/certified/level_kernel.cpp"
 #include <hwy/foreach_target.h>

@@ -35,8 +35,8 @@ void HullSplit::build(const LevelColumns& columns, const std::vector<OpenItem>& 
   for (std::uint32_t o = 0; o < open.size(); ++o) add_steps(columns, open[o], o, bracket);
 }
 
-// The upper hull of the levels from item.high to item.low, by one scan over them where cost and value rise from each to the
-// next (Andrew's monotone chain), else by gift wrapping.
+// The upper hull of the levels from item.high to item.low, by one scan over them where cost and value rise from each to
+// the next (Andrew's monotone chain), else by gift wrapping.
 void HullSplit::add_steps(const LevelColumns& columns, const OpenItem& item, std::uint32_t open,
                           const Bracket& bracket) {
   hull_[0] = point(columns, item.item, item.high);
@@ -59,7 +59,8 @@ void HullSplit::add_steps(const LevelColumns& columns, const OpenItem& item, std
   }
 }
 
-// From the choice at the high multiplier always to the steepest next level, of equals the dearest. Returns the hull's size.
+// From the choice at the high multiplier always to the steepest next level, of equals the dearest. Returns the hull's
+// size.
 std::size_t HullSplit::wrap(const LevelColumns& columns, const OpenItem& item) {
   hull_[0] = point(columns, item.item, item.high);
   const Point end = point(columns, item.item, item.low);

@@ -10,8 +10,17 @@ namespace {
 constexpr std::int16_t kOpen = -2;   // a move: give way to the children
 constexpr std::int16_t kLeave = -3;  // ... draw nothing of the subtree
 constexpr std::size_t kGroups = 32;
+// Moves put in order at first. More are where losses are equal within an item, or items lie in one another.
+constexpr std::size_t kFirstRanks = 512;
 
 }  // namespace
+
+// The order of moves: the least loss first.
+bool TreeSearch::before(const Move& a, const Move& b) {
+  if (a.loss != b.loss) return a.loss < b.loss;
+  if (a.item != b.item) return a.item < b.item;
+  return a.to != b.to ? a.to < b.to : a.x < b.x;
+}
 
 void TreeSearch::level_moves(std::size_t item) {
   const int own = now_[item].own;
@@ -93,32 +102,46 @@ void TreeSearch::apply(const Move& move) {
   cost_s_ += move.cost_s;
 }
 
-// The near-ties with the smallest losses, one group an item; of items that lie in one another the first stays.
+// Items with the nearest ties, nearest first; of items that lie in one another the first stays. Only as many of the
+// moves are put in order as it takes: some hundreds of what may be a million.
+void TreeSearch::pick_items() {
+  ranks_.clear();
+  for (const Move& move : moves_) ranks_.push_back({move.loss, static_cast<std::uint32_t>(ranks_.size())});
+  const auto nearer = [&](const Rank& a, const Rank& b) {
+    return a.loss != b.loss ? a.loss < b.loss : before(moves_[a.move], moves_[b.move]);
+  };
+  picked_order_.clear();
+  std::size_t part = kFirstRanks;
+  for (auto first = ranks_.begin(); first != ranks_.end() && picked_order_.size() < kGroups; part *= 4) {
+    const auto last = first + std::min(static_cast<std::ptrdiff_t>(part), ranks_.end() - first);
+    std::nth_element(first, last, ranks_.end(), nearer);
+    std::sort(first, last, nearer);
+    for (; first != last && picked_order_.size() < kGroups; ++first) pick(moves_[first->move].item);
+  }
+}
+
+void TreeSearch::pick(std::uint32_t item) {
+  const auto overlaps = [&](std::uint32_t other) {
+    return other == item || (item < other ? other < end(item) : item < end(other));
+  };
+  if (std::none_of(picked_order_.begin(), picked_order_.end(), overlaps)) picked_order_.push_back(item);
+}
+
+// The near-ties with the smallest losses are decided together, one group an item.
 void TreeSearch::improve() {
   m_ = high_;
   moves_.clear();
   find_moves(0, workload_->size());
-  const auto nearer = [](const Move& a, const Move& b) {
-    return a.loss != b.loss   ? a.loss < b.loss
-           : a.item != b.item ? a.item < b.item
-           : a.to != b.to     ? a.to < b.to
-                              : a.x < b.x;
-  };
-  std::sort(moves_.begin(), moves_.end(), nearer);
-  picked_order_.clear();
-  for (const Move& move : moves_) {
-    const auto overlaps = [&](std::uint32_t item) {
-      return item == move.item || (move.item < item ? item < end(move.item) : move.item < end(item));
-    };
-    if (picked_order_.size() < kGroups && std::none_of(picked_order_.begin(), picked_order_.end(), overlaps)) {
-      picked_order_.push_back(move.item);
-    }
-    if (picked_order_.size() == kGroups) break;
-  }
+  pick_items();
   core_.clear();
   for (std::uint32_t g = 0; g < picked_order_.size(); ++g) {
-    for (std::uint32_t k = 0; k < moves_.size(); ++k) {
-      if (moves_[k].item == picked_order_[g]) core_.add(g, moves_[k].cost_s, moves_[k].loss, k);
+    const std::uint32_t item = picked_order_[g];
+    // find_moves() goes through the items in their order.
+    const auto first = std::partition_point(moves_.begin(), moves_.end(), [&](const Move& m) { return m.item < item; });
+    const auto last = std::partition_point(first, moves_.end(), [&](const Move& m) { return m.item == item; });
+    std::sort(first, last, before);
+    for (auto move = first; move != last; ++move) {
+      core_.add(g, move->cost_s, move->loss, static_cast<std::uint32_t>(move - moves_.begin()));
     }
   }
   core_.solve(std::max(budget_s_ - cost_s_, 0.0), high_, most_states_);

@@ -52,7 +52,8 @@ double TreeSearch::ceiling(std::size_t item, double x) const {
   return keeps ? rung_at(*workload_, item, kept).high : 1;
 }
 
-// The best resolution, or that on the kept rung if it is worth more with the bonus. The bonus does not move x within the rung.
+// The best resolution, or that on the kept rung if it is worth more with the bonus. The bonus does not move x within
+// the rung.
 TreeSearch::Node TreeSearch::evaluate_curve(std::size_t item) const {
   Node node;
   node.x = best_resolution(*workload_, item, m_);
@@ -119,8 +120,8 @@ double TreeSearch::evaluate(double multiplier, Nodes& nodes) {
   return cost_s.value();
 }
 
-// How far the multiplier has to go from one at which `cost_s` is spent, as a logarithm, and a little beyond; a factor of 2
-// where nothing is known.
+// How far the multiplier has to go from one at which `cost_s` is spent, as a logarithm, and a little beyond; a factor
+// of 2 where nothing is known.
 double TreeSearch::first_step(double cost_s) const {
   if (multiplier_ == 0) return std::log(2.0);
   const double off = std::fabs(std::log(cost_s / budget_s_)) / elasticity_;
@@ -164,9 +165,9 @@ bool TreeSearch::enclose() {
   }
 }
 
-// Narrows the bracket by false position on log cost over log multiplier (Illinois: an end that stays counts half), and every
-// third time by halving, since cost falls in jumps. Aims at the middle of what may be left; ends when no more is left to spend, or
-// between two sides of a jump.
+// Narrows the bracket by false position on log cost over log multiplier (Illinois: an end that stays counts half), and
+// every third time by halving, since cost falls in jumps. Aims at the middle of what may be left; ends when no more is
+// left to spend, or between two sides of a jump.
 void TreeSearch::narrow() {
   const double aim_s = budget_s_ * (1 - spent_ / 2);
   double over = std::log(low_cost_s_ / aim_s), under = std::log(high_cost_s_ / aim_s);

@@ -60,6 +60,10 @@ class TreeSearch {
     std::int16_t to;  // a level, kOpen or kLeave
     double x;         // of a curve
   };
+  struct Rank {
+    double loss;
+    std::uint32_t move;  // index into moves_
+  };
   using Nodes = std::vector<Node>;
 
   std::size_t end(std::size_t item) const;
@@ -77,6 +81,9 @@ class TreeSearch {
   void prove();
   void settle(std::size_t first, std::size_t last);
   void take_open_jumps(std::size_t first, std::size_t last);
+  static bool before(const Move& a, const Move& b);
+  void pick_items();
+  void pick(std::uint32_t item);
   void improve();
   void find_moves(std::size_t first, std::size_t last);
   void level_moves(std::size_t item);
@@ -103,7 +110,8 @@ class TreeSearch {
   Nodes at_low_, at_high_, trial_;
   std::vector<Node> now_;  // the choice being built: own level and x where drawn
   double cost_s_ = 0;
-  std::vector<Move> moves_;
+  std::vector<Move> moves_;  // in the order of their items
+  std::vector<Rank> ranks_;  // ... in part by loss
   std::vector<std::uint32_t> picked_order_;
   Core core_;
   CurveFill curves_;

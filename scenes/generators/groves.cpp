@@ -1,7 +1,8 @@
-// groves: trees by the million, as groups (Zach et al. 2002, section 4). One tree stands in each forest cell of a jittered
-// grid over the region; the forest is where a smooth random field is highest, so that exactly `count` cells belong to it.
-// A quadtree over the cells splits until a square holds at most `group` trees: such squares are the leaves, continuous items
-// of type grove-N with N trees each; the squares above are bundles. Single trees are not kept. O(grid^2).
+// groves: trees by the million, as groups (Zach et al. 2002, section 4). One tree stands in each forest cell of a
+// jittered grid over the region; the forest is where a smooth random field is highest, so that exactly `count` cells
+// belong to it. A quadtree over the cells splits until a square holds at most `group` trees: such squares are the
+// leaves, continuous items of type grove-N with N trees each; the squares above are bundles. Single trees are not kept.
+// O(grid^2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -210,8 +211,8 @@ class Groves final : public Generator {
     type.continuous = true;
     type.shape = CurveShape::square_root;
     type.draws_scale_below_knee = true;
-    // Down to a single splat: a policy that takes discrete levels and may not omit anything has a coarsest level as cheap
-    // as the curve's, instead of a floor that no budget covers.
+    // Down to a single splat: a policy that takes discrete levels and may not omit anything has a coarsest level as
+    // cheap as the curve's, instead of a floor that no budget covers.
     type.stand_in_levels = std::min(32, 1 + static_cast<int>(std::ceil(std::log2(std::max(1.0, facts.polygons)))));
     type.benefit = BenefitModel::zach_trees;
     type.radius_m = p_.tree_height * std::sqrt(trees);

@@ -1,6 +1,7 @@
-// museum: a tile grid of rooms with statues (SRGGE 2020). Each floor tile is a cell; neighbouring tiles are joined by an
-// opening as wide as the tile but for two pillars, which is a portal. The floor plan is a map in the scene file, or all
-// tiles with openings drawn at random such that every tile can be reached. Statues stand on up to four places a tile.
+// museum: a tile grid of rooms with statues (SRGGE 2020). Each floor tile is a cell; neighbouring tiles are joined by
+// an opening as wide as the tile but for two pillars, which is a portal. The floor plan is a map in the scene file, or
+// all tiles with openings drawn at random such that every tile can be reached. Statues stand on up to four places a
+// tile.
 #include <fmt/format.h>
 
 #include <algorithm>

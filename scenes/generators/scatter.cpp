@@ -1,7 +1,7 @@
 // scatter: instances on a jittered grid in a rectangle. Copy this file to start another generator.
 //
-// The grid has just enough cells for the wanted number; where it has more, the empty ones are drawn at random. A point is
-// moved within its cell by up to `jitter` of what keeps it `spacing` away from its neighbours. O(count).
+// The grid has just enough cells for the wanted number; where it has more, the empty ones are drawn at random. A point
+// is moved within its cell by up to `jitter` of what keeps it `spacing` away from its neighbours. O(count).
 #include <fmt/format.h>
 
 #include <algorithm>

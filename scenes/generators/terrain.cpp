@@ -1,6 +1,6 @@
-// terrain: a quadtree of patches over a square height field (Zach et al. 2002, section 4, after Kofler et al.). The region
-// is centred on the origin. Every node is drawn as one patch of (patch+1)^2 samples, so a node shows its square at half the
-// resolution of its children. Types terrain-0 (the root) .. terrain-D are made here. O(side^2).
+// terrain: a quadtree of patches over a square height field (Zach et al. 2002, section 4, after Kofler et al.). The
+// region is centred on the origin. Every node is drawn as one patch of (patch+1)^2 samples, so a node shows its square
+// at half the resolution of its children. Types terrain-0 (the root) .. terrain-D are made here. O(side^2).
 #include <fmt/format.h>
 
 #include <algorithm>

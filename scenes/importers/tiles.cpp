@@ -1,6 +1,6 @@
 // 3D Tiles 1.0 and 1.1. A scene file has objects with levels and no stated tree, so that a tileset becomes:
-//   - a chain of tiles that REPLACE each other (each with one child at most) is one object, its tiles the levels, coarse to fine;
-//     where all of them are i3dm with equally many instances, so many objects;
+//   - a chain of tiles that REPLACE each other (each with one child at most) is one object, its tiles the levels,
+//     coarse to fine; where all of them are i3dm with equally many instances, so many objects;
 //   - the content of a tile that ADDs to its children is an object of its own, always there;
 //   - the content of a tile that several children REPLACE stands for all of them at once and is left out, with a note.
 // Contents that are not there are counted by an assumption: as many polygons as squares of the geometric error cover

@@ -13,7 +13,8 @@ namespace framesim {
 namespace {
 
 constexpr std::uint32_t kLeafRows = 8;
-// A box decides for all its spheres; this much of its size keeps rounding from deciding otherwise than each sphere would.
+// A box decides for all its spheres; this much of its size keeps rounding from deciding otherwise than each sphere
+// would.
 constexpr double kSlack = 1e-12;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Sampled cell visibility of tile museums (SRGGE 2020, section 2): which cells can be seen from which, found once by random
-// sight lines; then, in each frame, the frustum within the cells that the eye's cell sees. Unlike portals it may miss a cell
-// that is seen through a gap too narrow for the samples.
+// Sampled cell visibility of tile museums (SRGGE 2020, section 2): which cells can be seen from which, found once by
+// random sight lines; then, in each frame, the frustum within the cells that the eye's cell sees. Unlike portals it may
+// miss a cell that is seen through a gap too narrow for the samples.
 #include <algorithm>
 #include <cmath>
 

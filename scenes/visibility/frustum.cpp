@@ -1,5 +1,5 @@
-// View frustum culling (Robin Hood 2005, section 7, uses a hierarchy of bounding boxes): boxes over the bounding spheres of
-// a flat scene, or the scene's own tree. O(visible + boundary) bound tests.
+// View frustum culling (Robin Hood 2005, section 7, uses a hierarchy of bounding boxes): boxes over the bounding
+// spheres of a flat scene, or the scene's own tree. O(visible + boundary) bound tests.
 #include <cmath>
 #include <numeric>
 

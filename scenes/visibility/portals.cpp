@@ -1,7 +1,7 @@
 // Cells and portals, from the eye (Luebke and Georges 1995; the eye-to-object step of Teller and Séquin 1991, which
-// Funkhouser and Séquin 1993 use): the view volume is narrowed through each portal on a depth-first walk of the cell graph.
-// A straight line meets a convex cell once, so no cell comes twice on a path. The number of paths is exponential in the
-// worst case, but a volume that has narrowed to nothing ends its path at once.
+// Funkhouser and Séquin 1993 use): the view volume is narrowed through each portal on a depth-first walk of the cell
+// graph. A straight line meets a convex cell once, so no cell comes twice on a path. The number of paths is exponential
+// in the worst case, but a volume that has narrowed to nothing ends its path at once.
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
 

@@ -1,12 +1,13 @@
 // fifo: how many commands may wait before each GPU stage.
 //
-// Models:  the bounded queues B1 (before the per-primitive stage) and B2 (before the per-pixel stage) of MODEL section 1. A
-//          full queue blocks the stage before it: with B1 full the CPU waits in the middle of its submission. A capacity that
+// Models:  the bounded queues B1 (before the per-primitive stage) and B2 (before the per-pixel stage) of MODEL section
+//          1. A full queue blocks the stage before it: with B1 full the CPU waits in the middle of its submission. A
+//             capacity that
 //          is not given stays the machine's.
 // Source:  Funkhouser and Sequin 1993, section 4, draw on a pipeline of two such stages and assume that its queues hide
 //          all variation between them; finite capacities show when that fails.
-// Inert:   both capacities are the machine's own, or its overlap is a closed form, which has no queues. (The estimators'
-//          benchmark draws equal commands, whose total time does not depend on the capacities.)
+// Inert:   both capacities are the machine's own, or its overlap is a closed form, which has no queues. (The
+//          estimators' benchmark draws equal commands, whose total time does not depend on the capacities.)
 #include <fmt/format.h>
 
 #include "sim/effect.h"

@@ -1,11 +1,11 @@
 // focus: what is near the middle of the screen is looked at.
 //
 // Models:  the benefit of an item falls in proportion to its distance from the middle of the screen, to 0 at the angle
-//          `half`: factor max(0, 1 - angle/half), the angle between view direction and the centre of its bounding sphere.
-//          An angle, not pixels, because the centre of an item that is partly in view may lie beside or behind the camera,
-//          where there is no place on the screen. About how one looks, so it applies to every benefit, also to those of
-//          terrain, groves and stated levels. Each node of a tree has the angle of its own centre, and a block of terrain
-//          that of its node, so that a cut is not worth the same in both presentations.
+//          `half`: factor max(0, 1 - angle/half), the angle between view direction and the centre of its bounding
+//          sphere. An angle, not pixels, because the centre of an item that is partly in view may lie beside or behind
+//          the camera, where there is no place on the screen. About how one looks, so it applies to every benefit, also
+//          to those of terrain, groves and stated levels. Each node of a tree has the angle of its own centre, and a
+//          block of terrain that of its node, so that a cut is not worth the same in both presentations.
 // Source:  Funkhouser and Sequin 1993, section 5, focus; how fast it falls is not printed.
 // Inert:   weight=0.
 #include <algorithm>

@@ -1,10 +1,10 @@
 // frames-in-flight: the CPU works ahead of the display by up to n frames.
 //
-// Models:  the queue of frames between program and display: cpu_start[k] = max(P[last of k-1], shown[k-n]) (MODEL section 1).
-//          One frame in flight makes a frame pay for its serial part; with more the CPU works on the next frame while the GPU
-//          draws this one, for a latency that grows with n.
-// Source:  MODEL section 2: recorded games hide the serial part behind a queue two frames deep. The papers' programs had one
-//          frame in flight (Robin Hood 2005, section 5.3).
+// Models:  the queue of frames between program and display: cpu_start[k] = max(P[last of k-1], shown[k-n]) (MODEL
+//          section 1). One frame in flight makes a frame pay for its serial part; with more the CPU works on the next
+//          frame while the GPU draws this one, for a latency that grows with n.
+// Source:  MODEL section 2: recorded games hide the serial part behind a queue two frames deep. The papers' programs
+//          had one frame in flight (Robin Hood 2005, section 5.3).
 // Inert:   the machine has n in flight already, or its overlap is a closed form, which knows one frame at a time.
 #include <fmt/format.h>
 

@@ -1,14 +1,15 @@
 // hysteresis: an object that changes its level of detail draws the eye.
 //
-// Models:  the benefit of a level falls in proportion to its difference from the level in which the item was drawn in the last
-//          frame: factor 1 - |level - last|/(levels - 1). The last level itself, all levels of an item that was not drawn or
-//          not visible then, and an item of one level keep theirs. It applies to every benefit, stated ones too.
-//          Not priced: a change of a curve's resolution, or of the cut through a hierarchy (the nodes of another cut were not
-//          drawn); what stands in for a curve, and blocks of terrain, have levels and are priced.
-//          Nothing is locked: the policy weighs the change against its gain. But where two levels differ by a percent in
-//          accuracy, so small a weight holds them already, and a coarser level may be worth more than a finer one.
-//          The benefit that a run reports includes the factor: it is the benefit of this picture after the last one. So does
-//          the most that the frame could have, beside it: of each item the level that is worth most after the last picture.
+// Models:  the benefit of a level falls in proportion to its difference from the level in which the item was drawn in
+//          the last frame: factor 1 - |level - last|/(levels - 1). The last level itself, all levels of an item that
+//          was not drawn or not visible then, and an item of one level keep theirs. It applies to every benefit, stated
+//          ones too. Not priced: a change of a curve's resolution, or of the cut through a hierarchy (the nodes of
+//          another cut were not drawn); what stands in for a curve, and blocks of terrain, have levels and are priced.
+//          Nothing is locked: the policy weighs the change against its gain. But where two levels differ by a percent
+//          in accuracy, so small a weight holds them already, and a coarser level may be worth more than a finer one.
+//          The benefit that a run reports includes the factor: it is the benefit of this picture after the last one. So
+//          does the most that the frame could have, beside it: of each item the level that is worth most after the last
+//          picture.
 // Source:  Funkhouser and Sequin 1993, section 5, hysteresis (levels; a change of algorithm is a change of level here).
 // Inert:   weight=0, or no item of the scene has two levels.
 #include <algorithm>

@@ -1,16 +1,16 @@
 // jitter: each command's GPU times vary about their mean.
 //
-// Models:  what the facts of a representation do not tell of its cost (caches, overdraw, clocks): a factor for each command
-//          and stage.
+// Models:  what the facts of a representation do not tell of its cost (caches, overdraw, clocks): a factor for each
+//          command and stage.
 //          log-normal: exp(sigma*z - sigma^2/2) with z standard normal (log_normal.h). Its mean is exactly 1, so that
 //          jitter adds spread and no bias; it is never negative; sigma is about the relative deviation (0.05: 5 %).
 //          own distribution: `quantiles` of the factor at equally spaced probabilities 0, 1/(n-1) .. 1, linear between
 //          (0.9:1:1.3 has half of its factors below 1). Taken as given, so that their mean is a bias; with rescale=yes
 //          divided by their mean.
 // Source:  Funkhouser and Sequin 1993, section 4, state 10 % at the 95 % level for their cost model: sigma = 0.05.
-// Keyed:   (seed, "jitter", frame, command, stage), so that no other effect moves its draws: the commands 2b and 2b+1 of
-//          a frame take the words 0, 2 and 1, 3 of the stream's block at (frame, b). Log-normal: both stages from both
-//          words; own: the per-primitive factor from the first, the per-pixel factor from the second.
+// Keyed:   (seed, "jitter", frame, command, stage), so that no other effect moves its draws: the commands 2b and 2b+1
+//          of a frame take the words 0, 2 and 1, 3 of the stream's block at (frame, b). Log-normal: both stages from
+//          both words; own: the per-primitive factor from the first, the per-pixel factor from the second.
 // Inert:   sigma=0, and own factors that are all 1.
 #include <fmt/format.h>
 

@@ -23,8 +23,8 @@ HWY_INLINE Vector plus_times(Vector sum, Vector a, Vector b) { return hn::Add(hn
 HWY_INLINE Vector line(float c0, float c1, Vector x) { return plus_times(constant(c0), constant(c1), x); }
 
 // -2 ln of u = (floor(r/2) + 1/2) / 2^31, in [0, 44.4]; relative error below 4e-7, so that it is 0 only at u = 1.
-// u = m * 2^e with m in [sqrt(1/2), sqrt(2)); -2 ln(1+x) = x * P(x), P the minimax polynomial of degree 7 (relative error
-// 1.7e-7), by Estrin's scheme, whose chain of dependent operations is short.
+// u = m * 2^e with m in [sqrt(1/2), sqrt(2)); -2 ln(1+x) = x * P(x), P the minimax polynomial of degree 7 (relative
+// error 1.7e-7), by Estrin's scheme, whose chain of dependent operations is short.
 HWY_INLINE Vector minus_two_log(hn::Vec<hn::RebindToUnsigned<Floats>> r) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -56,9 +56,9 @@ HWY_INLINE Vector sin_quarter(Vector t, Vector t2) {
   return hn::Mul(plus_times(constant(1.5707963184662439f), p, t2), t);
 }
 
-// 2^y. Within [-1/2, 1/2] the minimax polynomial that is 1 at 0 (relative error 9.2e-8), so that small factors have no bias; beyond, the nearest whole number is taken off
-// and added to the exponent. Adding 1.5 * 2^23 rounds to it and leaves it in the lowest bits. Where kShort is allowed
-// that number is 0, and leaving the steps out changes no bit.
+// 2^y. Within [-1/2, 1/2] the minimax polynomial that is 1 at 0 (relative error 9.2e-8), so that small factors have no
+// bias; beyond, the nearest whole number is taken off and added to the exponent. Adding 1.5 * 2^23 rounds to it and
+// leaves it in the lowest bits. Where kShort is allowed that number is 0, and leaving the steps out changes no bit.
 template <bool kShort>
 HWY_INLINE Vector power_of_two(Vector y) {
   const Floats d;
@@ -98,8 +98,8 @@ void Factors(const std::uint32_t* radius, const std::uint32_t* angle, std::size_
   (is_short ? factors<true> : factors<false>)(radius, angle, count, scale, shift, first, second);
 }
 
-// Whole numbers below 2^52 are the low bits of doubles in [2^52, 2^53): or-ing and taking off 2^52 converts one way, adding
-// it rounds (ties to even) and converts back. No conversion instruction is needed, which not all registers have.
+// Whole numbers below 2^52 are the low bits of doubles in [2^52, 2^53): or-ing and taking off 2^52 converts one way,
+// adding it rounds (ties to even) and converts back. No conversion instruction is needed, which not all registers have.
 constexpr std::int64_t kMagicBits = 0x4330000000000000;
 
 HWY_INLINE std::int64_t all_bits(const std::int64_t* durations, std::size_t count) {

@@ -1,18 +1,18 @@
 // motion-blur: what moves fast across the screen is not seen sharply.
 //
-// Models:  the benefit of an item falls in proportion to its apparent speed over its size, to 0 at `gone` sizes a frame:
-//          factor max(0, 1 - speed/(gone*size)). Size is the square root of the projected area, in pixels. Speed, in pixels
-//          since the last frame, is
+// Models:  the benefit of an item falls in proportion to its apparent speed over its size, to 0 at `gone` sizes a
+//          frame: factor max(0, 1 - speed/(gone*size)). Size is the square root of the projected area, in pixels.
+//          Speed, in pixels since the last frame, is
 //              focal * |angle - last angle|  +  |size - last size| / 2
-//          with the angle between view direction and item. The first term is what the item's distance from the middle of
-//          the screen changes by, near the middle, and less than that elsewhere; motion around the middle is not in it, as
-//          the workload has no direction: it is a lower bound of what the centre moves. The second is what its outline
-//          moves while it grows or shrinks. So slow items are never blurred by it, and some fast ones too little (a
-//          camera that rolls blurs nothing).
-//          Speed is by frame, not by second: a camera path is one pose a frame. An item that was not in the workload of the
-//          last frame is sharp, and so is one of no size. It applies to every benefit, as focus does.
-// Source:  Funkhouser and Sequin 1993, section 5, motion blur. The paper divides by an average size within the object, by
-//          which finer levels would blur sooner; here it is the object's (MODEL section 4).
+//          with the angle between view direction and item. The first term is what the item's distance from the middle
+//          of the screen changes by, near the middle, and less than that elsewhere; motion around the middle is not in
+//          it, as the workload has no direction: it is a lower bound of what the centre moves. The second is what its
+//          outline moves while it grows or shrinks. So slow items are never blurred by it, and some fast ones too
+//          little (a camera that rolls blurs nothing).
+//          Speed is by frame, not by second: a camera path is one pose a frame. An item that was not in the workload of
+//          the last frame is sharp, and so is one of no size. It applies to every benefit, as focus does.
+// Source:  Funkhouser and Sequin 1993, section 5, motion blur. The paper divides by an average size within the object,
+//          by which finer levels would blur sooner; here it is the object's (MODEL section 4).
 // Inert:   weight=0. A scene that does not know its focal length (SceneFacts) has the second term only.
 #include <algorithm>
 #include <cmath>

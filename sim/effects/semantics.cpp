@@ -1,9 +1,10 @@
 // semantics: some types of object matter more than others.
 //
-// Models:  the benefit of every level of an item is multiplied by the importance of its type (0..1; `importance` in the scene
-//          file), for types of the funkhouser benefit model. Terrain and groves are scored by Zach's formulas, which know no
-//          importance, and a level whose benefit is stated outright has that benefit: all of these are left alone.
-//          A policy with values of its own (robin-hood) reads the importance of the types whether this is declared or not.
+// Models:  the benefit of every level of an item is multiplied by the importance of its type (0..1; `importance` in the
+//          scene file), for types of the funkhouser benefit model. Terrain and groves are scored by Zach's formulas,
+//          which know no importance, and a level whose benefit is stated outright has that benefit: all of these are
+//          left alone. A policy with values of its own (robin-hood) reads the importance of the types whether this is
+//          declared or not.
 // Source:  Funkhouser and Sequin 1993, section 5, semantics.
 // Inert:   weight=0, or no level that it applies to belongs to a type of importance other than 1.
 #include <algorithm>
@@ -51,8 +52,8 @@ class Semantics : public Effect {
   }
 
  private:
-  // From fine to coarse: what stands in for a resolution of a curve is worth what the curve is worth there, and takes that
-  // from its finest level. So both presentations of the curve agree to the last bit.
+  // From fine to coarse: what stands in for a resolution of a curve is worth what the curve is worth there, and takes
+  // that from its finest level. So both presentations of the curve agree to the last bit.
   static void grade(Workload& workload, std::size_t item, double factor) {
     const std::uint32_t begin = workload.level_begin[item];
     for (std::size_t l = workload.levels(item); l-- > 0;) {

@@ -1,11 +1,11 @@
 // submission: what it costs the CPU to hand a command to the GPU.
 //
-// Models:  the driver's work for each command, and for each draw call of a command beyond its first (a group of 64 trees is
-//          one command of 64 draw calls). It is CPU time between commands: the GPU may begin with the first of them while
-//          the CPU still submits the last, so that many small objects are bound by submission and few large ones are not.
-//          A cost that is not given stays the machine's.
-// Source:  the setup cost of a draw call is what Zach et al. 2002 (section 5.3) form groups of trees against; MODEL section
-//          1, submit[i].
+// Models:  the driver's work for each command, and for each draw call of a command beyond its first (a group of 64
+//          trees is one command of 64 draw calls). It is CPU time between commands: the GPU may begin with the first of
+//          them while the CPU still submits the last, so that many small objects are bound by submission and few large
+//          ones are not. A cost that is not given stays the machine's.
+// Source:  the setup cost of a draw call is what Zach et al. 2002 (section 5.3) form groups of trees against; MODEL
+//          section 1, submit[i].
 // Inert:   both costs are the machine's own.
 #include <fmt/format.h>
 

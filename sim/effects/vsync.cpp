@@ -1,8 +1,8 @@
 // vsync: a finished frame is shown at the next vertical blank, one frame a blank.
 //
-// Models:  a display of fixed refresh rate with presentation in step. MODEL section 1: shown = max(ceil((E2 + swap)/V)*V,
-//          shown[k-1] + V); the first blank is at time 0. A frame that just misses a blank waits for the next, so frame
-//          times are multiples of V, whatever the busy times (MODEL section 2, on recorded captures).
+// Models:  a display of fixed refresh rate with presentation in step. MODEL section 1: shown = max(ceil((E2 +
+//          swap)/V)*V, shown[k-1] + V); the first blank is at time 0. A frame that just misses a blank waits for the
+//          next, so frame times are multiples of V, whatever the busy times (MODEL section 2, on recorded captures).
 // Source:  the presentation that the recorded games of MODEL section 2 use; the papers' tests ran without it.
 // Inert:   rate=off (or 0), or a rate so high that the period is 0 ps.
 #include <cmath>

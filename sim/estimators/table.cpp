@@ -67,8 +67,8 @@ struct Samples {
   }
 };
 
-// Seconds for one of `part` in a draw that covers `area_px`: the slope between one and two sizes, so that a constant share
-// does not count. They are large enough that the pixels are clearly not what takes the time.
+// Seconds for one of `part` in a draw that covers `area_px`: the slope between one and two sizes, so that a constant
+// share does not count. They are large enough that the pixels are clearly not what takes the time.
 double measure_slope(const Machine& machine, Algorithm algorithm, std::size_t part, double area_px, int draws) {
   constexpr double kLargest = 1 << 30, kClearly = 1.5;
   const double pixels_s = measure_draw_s(machine, empty_facts(algorithm), area_px, draws);

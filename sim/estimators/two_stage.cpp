@@ -9,8 +9,9 @@
 // coefficients. The fit minimises the *relative* error: small draws are many.
 //
 // Known failure: time that is not linear in projected area. One C3 is then too high for small areas and too low for
-// large ones, by about half of the nonlinearity over the screen; the paper reports 10 % at the 95 % level. Where primitives
-// take longer the more their draw covers (a machine's area_exponent), C1 and C2, measured on one pixel, are too low.
+// large ones, by about half of the nonlinearity over the screen; the paper reports 10 % at the 95 % level. Where
+// primitives take longer the more their draw covers (a machine's area_exponent), C1 and C2, measured on one pixel, are
+// too low.
 #include <algorithm>
 #include <cmath>
 

@@ -11,7 +11,8 @@
 //   closed forms, T = max + s*min  t_r = target - s*t_l if that is >= t_l, else (target - t_l)/s; 0 if t_l >= target.
 //                                  t_r contains clear and swap.
 //
-// Known failure: it is exact for the estimates that it is given, and takes the GPU's time for the sum of the draws' (see
+// Known failure: it is exact for the estimates that it is given, and takes the GPU's time for the sum of the draws'
+//                (see
 // estimators/oracle.cpp); nothing is kept in reserve for errors.
 #include <algorithm>
 
@@ -21,9 +22,9 @@ namespace framesim {
 
 namespace {
 
-// The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]. Of the forms for the
-// longer and the shorter drawing the right one is always the smaller: taken so, the result is within an eps of the exact one,
-// where a comparison with t_l that rounding turns would cost 1/s eps.
+// The t_r >= 0 with max(t_l, t_r) + s*min(t_l, t_r) = target, or 0 if t_l alone reaches it. s in [0,1]. Of the forms
+// for the longer and the shorter drawing the right one is always the smaller: taken so, the result is within an eps of
+// the exact one, where a comparison with t_l that rounding turns would cost 1/s eps.
 double closed_form_inverse(double logic_s, double target_s, double share) {
   if (logic_s >= target_s) return 0;
   const double draw_longer = target_s - share * logic_s;

@@ -246,16 +246,36 @@ TEST_CASE("command line: explain says which engine follows, and which columns an
     more.insert(more.begin(), {"explain", "street"});
     return run_program(more).out;
   };
-  CHECK(has(explained({}), "engine         recurrence: exact for all active effects, overlap staged:1"));
-  CHECK(has(explained({"--fidelity", "events"}), "engine         events: asked for; exact"));
-  CHECK(has(explained({"--overlap", "serial"}), "engine         closed-form: overlap serial is one formula a frame"));
-  CHECK(has(explained({"--effect", "preemption"}),
-            "engine         events: exact for all active effects, overlap staged:1; needed for preemption\n"));
+  CHECK(has(explained({"--fidelity", "events"}),
+            "engine         events: asked for; exact for overlap staged:1 with semantics; the recurrence gives"));
+  CHECK(has(explained({"--overlap", "serial"}),
+            "engine         closed-form: exact for overlap serial with semantics; one formula a frame\n"));
   CHECK(has(explained({"--effect", "preemption", "--effect", "streaming:preload=no", "--effect", "jitter"}),
             "needed for streaming, preemption\n"));
   CHECK(has(explained({"--effect", "streaming"}), "engine         recurrence: exact"));  // the street fits: inert
   CHECK(has(explained({"--policy", "static", "--effect", "focus"}), "view angle         computed for effects focus\n"));
   CHECK(has(explained({"--effect", "focus:weight=0"}), "view angle         not computed\n"));
+}
+
+// The street declares semantics and vsync, and vsync is inert: it is not among what the times are exact for.
+TEST_CASE("command line: explain names the effects for which the times are exact") {
+  const auto engine = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"explain", "street"});
+    const std::string out = run_program(more).out;
+    const std::size_t at = out.find("\nengine ");
+    return at == std::string::npos ? out : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
+  };
+  const std::string pass = "engine         recurrence: exact for overlap staged:1";
+  CHECK(engine({}) == pass + " with semantics; one pass over the commands");
+  CHECK(engine({"--no-effect", "all"}) == pass + ", no effect is active; one pass over the commands");
+  // In the order in which they apply, not that of the command line.
+  CHECK(engine({"--effect", "jitter", "--effect", "focus", "--no-effect", "semantics"}) ==
+        pass + " with focus, jitter; one pass over the commands");
+  CHECK(engine({"--effect", "preemption"}) ==
+        "engine         events: exact for overlap staged:1 with semantics, preemption; needed for preemption");
+  CHECK(engine({"--effect", "preemption", "--fidelity", "recurrence"}) ==
+        "engine         recurrence: asked for; not exact, as events would be (exact for overlap staged:1 with "
+        "semantics, preemption; needed for preemption)");
 }
 
 TEST_CASE("command line: explain lists what an engine that was asked for leaves out") {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -84,7 +86,7 @@ TEST_CASE("importance-adjust raises in falling importance, one level each in tur
 
 TEST_CASE("importance-adjust stops raising as soon as it is in range") {
   // 4 is in the range 4 .. 5, though another raise would fit.
-  CHECK(chosen(std::string(kAllCoarsest) + ",low=0.8", three_trees(), 5) == Levels{1, 0, 0});
+  CHECK(chosen(fmt::format("{},low=0.8", kAllCoarsest), three_trees(), 5) == Levels{1, 0, 0});
 }
 
 TEST_CASE("importance-adjust skips a raise that does not fit and goes on to the next") {

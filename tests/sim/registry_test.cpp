@@ -65,5 +65,6 @@ TEST_CASE("what is quoted is short and printable", "[words]") {
   CHECK(quoted(std::string(60, 'x')) == "'" + std::string(60, 'x') + "'");
   CHECK(quoted(std::string(61, 'x')) == "'" + std::string(60, 'x') + "...'");
   // The two bytes of an umlaut stay together: 59 letters, then it would be cut in its middle.
-  CHECK(quoted(std::string(59, 'x') + "\xc3\xbc") == "'" + std::string(59, 'x') + "...'");
+  const std::string letters(59, 'x');
+  CHECK(quoted(letters + "\xc3\xbc") == "'" + letters + "...'");
 }

@@ -87,7 +87,7 @@ TEST_CASE("merge: stores that contradict each other, or are of other sweeps, are
   for (const char* name : {"a.sqlite", "b.sqlite", "c.sqlite"}) make(folder, name, "0/1");
   Database(folder.path("b.sqlite"), Database::Open::existing).run("UPDATE run SET p95_s = p95_s * 2 WHERE id = 5");
   Database(folder.path("c.sqlite"), Database::Open::existing).run("UPDATE manifest SET version = '9.9'");
-  folder.write("sweep.toml", std::string(kSmallSweep) + "# another\n");
+  folder.write("sweep.toml", fmt::format("{}# another\n", kSmallSweep));
   make(folder, "d.sqlite", "0/1");
   folder.write("e.sqlite", "");
   const auto refused = [&](const std::vector<std::string>& in, const std::string& out, const std::string& words) {
