@@ -16,8 +16,8 @@
 // where B > 2 L R (x = 1) with L B - p (S + R) for the second. Let l be where it leaves A, the slope of its jump. For
 // curve i let
 //   d_i = max(k_i g_i^2 / (4 (s_i + k_i r_i)),  the most that L times its second branch is worth at any L >= l).
-//  - L >= l: the left of (1), times L, is at most sum d_i, as L times a first branch is constant; the right is A.
-//  - L < l, B <= 2 L R: towards smaller p the right grows by S a unit, the left by at most sum s_i = S: L times a
+//  - L >= l: the left of (1), times L, is at most sum d_i, as L times a first branch is constant; the right A.
+//  - L < l, B <= 2 L R: for smaller p the right grows by S a unit, the left by at most sum s_i = S: L times a
 //    second branch has slope -s_i in p, at x = 1 g/(2L) - c_i > r_i - c_i = -s_i; a first one 0.
 //  - L < l, B > 2 L R: u = B - L (S + R) is linear in L, the left convex: (1) holds between two L if at both, and at
 //    L = 0 it reads (1 - theta) B <= B.
