@@ -25,7 +25,7 @@
 // (1 - theta)^2 sum b_i^2/c_i <= B^2/(S + R).
 //
 // Variables that each keep 1 - theta keep it together, for every budget: for all together U and V are the best sums over
-// ways to divide the money. V counts a part of the last jump where that does not fit: one variable at a time. A bundle's
+// ways to share money. V counts a part of the last jump where that does not fit: one variable at a time. A bundle's
 // is then split, and what is missing is a part of a single curve's jump, or what its children lose by starting alike.
 #pragma once
 

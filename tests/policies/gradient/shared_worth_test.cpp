@@ -128,8 +128,8 @@ std::vector<TestCurve> random_group(TestRandom& random) {
 
 // Two curves of s = 1, r = 3, k = 1/9 and b = 5 and 3: m = 9 + 3 = 12. Shared: B = 8, S = 2, R = 6, A = 64/(4 * 24) =
 // 2/3, and B^2/(4R) - p S = 64/24 - 2p meets it at p = 1 (x = (8/12)^2 < 1). There, with q = (1 - theta)^2, the first is
-// worth 25q/12 - 1 (more than 25q/48 if 25q > 16), the second 9q/48 (more than 9q/12 - 1 if 9q < 16): the sum is <= 2/3
-// if q <= 80/109, theta >= 1 - sqrt(80/109) = 0.14330. Without set-up in mind it would be 1 - 8/sqrt(8 * 34/4) = 0.02986.
+// worth 25q/12 - 1 (more than 25q/48 if 25q > 16), the second 9q/48 (more than 9q/12 - 1 if 9q < 16): together <= 2/3 if
+// q <= 80/109, theta >= 1 - sqrt(80/109) = 0.14330. Without set-up in mind it would be 1 - 8/sqrt(8 * 34/4) = 0.02986.
 TEST_CASE("shared worth: theta by hand for two curves with a knee") {
   const std::vector<TestCurve> curves{{5, 1, 3, 1.0 / 9}, {3, 1, 3, 1.0 / 9}};
   CHECK_FALSE(may_share(curves, 0.1432));
@@ -142,8 +142,8 @@ TEST_CASE("shared worth: theta by hand for two curves with a knee") {
   CHECK(worst_loss(curves) <= 0.1434);
 }
 
-// Set-up of 1 that is paid at once and nothing else, b = 2 and 1. Money 1 buys the first curve, 2; shared, half the time
-// both: 1.5. Lost: 1/4, and more money loses less.
+// Set-up of 1 that is paid at once and nothing else, b = 2 and 1. Money 1 buys the first curve, 2; shared, half of both:
+// 1.5. Lost: 1/4, and more money loses less.
 TEST_CASE("shared worth: theta by hand for two curves that are all set-up") {
   const std::vector<TestCurve> curves{{2, 1, 0, 0}, {1, 1, 0, 0}};
   CHECK_FALSE(may_share(curves, 0.2499));
