@@ -13,13 +13,14 @@
 // Knee:          set-up that is not proportional to x makes cost against benefit non-concave: such a curve is raised smoothly
 //                up to a point below its knee; an increment that competes like all others takes it to a point above
 //                (gradient/curve_variable.h). With knee 0 that is the only way in; the paper leaves set-up out of the slope.
-// Splitting:     curves below a bundle share one variable while the loss is bounded by theta (gradient/node_sums.h). The variable's
-//                set-up is charged with the least knee of its curves, never too low. One whose jump does not fit any more
-//                is split into its children; a single curve jumps as far as the budget allows.
+// Splitting:     curves below a bundle share one variable while the loss is bounded by theta (gradient/node_sums.h; with set-up
+//                gradient/shared_worth.h). The variable's set-up is charged with the least knee of its curves, never too low.
+//                One whose jump does not fit any more is split into its children; a single curve jumps as far as the
+//                budget allows.
 // Culling:       curves of less projected area than cull-px are not drawn.
 // End:           curves left below their first primitive are dropped for others; money that is still left (a jump that did not
 //                fit, rounding) goes to the curve that gains most from it.
-// Complexity:    O(n) set-up, O(log n) an increment, O(variables) an evaluation, about 15 evaluations a step, steps <=
+// Complexity:    O(n depth) set-up, O(log n) an increment, O(variables) an evaluation, about 15 evaluations a step, steps <=
 //                ln(largest/smallest slope_d) / ln(1 + slack). No allocation in steady state.
 // Known failure: the gradient is not scaled by cost and x never falls again, so the first step shares in proportion to
 //                benefit where the optimum of b*sqrt(x) is in proportion to its square (`direction=multiplier` goes along the
@@ -67,8 +68,8 @@ const ParameterTable<MixedGradientParameters> kParameters{{
      {.help = "curves of a bundle share one variable where theta allows; false gives each its own"}},
     {"split-bound",
      &MixedGradientParameters::split_bound,
-     {.help = "loss of sharing: exact, the printed bound with n curves, or algorithm 1 to the letter",
-      .words = {"spread", "leaves", "printed"}}},
+     {.help = "loss of sharing: exact, exact but for set-up, printed with n curves, or algorithm 1 to the letter",
+      .words = {"exact", "no-setup", "leaves", "printed"}}},
     {"theta",
      &MixedGradientParameters::theta,
      {.low = 0, .high = 100, .help = "share of the curves' benefit that sharing may lose"}},
@@ -91,7 +92,7 @@ class MixedGradientPolicy : public Policy {
     return {.request = {.curves = true, .hierarchy = true, .columns = Columns::cost},
             .keeps_budget = true,
             .may_omit = true,
-            .operation = "item summed, variable evaluated, heap entry moved or level changed"};
+            .operation = "item summed, curve or variable evaluated, heap entry moved or level changed"};
   }
 
   void prepare(const PolicyScene&) override {}
@@ -105,7 +106,7 @@ class MixedGradientPolicy : public Policy {
     spend_rest(workload, budget_s_, curves_, selection);
     const auto is_curve = [&](std::size_t i) { return workload.kind[i] == ItemKind::curve; };
     selection.operations += keep_budget(workload, budget_s_, selection, is_curve);
-    selection.operations += heap_.moves() + ascent_.evaluations();
+    selection.operations += heap_.moves() + ascent_.evaluations() + sums_.evaluations();
     finish_plan(workload, selection);
   }
 

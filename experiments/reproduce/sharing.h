@@ -11,18 +11,19 @@
 
 namespace framesim {
 
-// How a loss is bounded, as mixed-gradient's parameter split-bound names it, and whether trees cost set-up as they do:
-// the bounds are derived without.
+// How a loss is bounded, as mixed-gradient's parameter split-bound names it, and whether trees cost set-up as they do: all
+// bounds but the first are derived without.
 struct SharingBound {
   std::string_view name, meaning;
   ShareBound bound;
   bool setup;
 };
-inline constexpr std::array<SharingBound, 4> kSharingBounds = {
-    {{"leaves", "C sqrt(X) (1 - 1/sqrt(n))", ShareBound::leaves, true},
+inline constexpr std::array<SharingBound, 5> kSharingBounds = {
+    {{"exact", "b_i, c_i, set-up known", ShareBound::exact, true},
+     {"leaves", "C sqrt(X) (1 - 1/sqrt(n))", ShareBound::leaves, true},
      {"printed", "algorithm 1 to the letter", ShareBound::printed, true},
-     {"spread", "b_i, c_i known", ShareBound::spread, true},
-     {"spread", "b_i, c_i known, no set-up", ShareBound::spread, false}}};
+     {"no-setup", "b_i, c_i known", ShareBound::no_setup, true},
+     {"no-setup", "b_i, c_i known, no set-up", ShareBound::no_setup, false}}};
 // Share of the trees' benefit that sharing may lose.
 inline constexpr std::array<double, 4> kSharingThetas = {0.01, 0.05, 0.2, 0.5};
 

@@ -92,9 +92,10 @@ void sharing_rows(const ReproduceContext& context, Reproduction& out) {
   out.remarks.push_back(fmt::format(
       "Section 3.5: along the optima (direction=multiplier), decisions free, so that budgets agree; against the same "
       "run in which no trees share, {:.0f} variables and {:.0f} operations a frame. Theta and losses are shares of "
-      "the trees' benefit. The bounds leave the set-up of a tree out of account: where trees have it, those of a "
-      "bundle that shares pass their knee together or not at all, and may lose more than the bound from b_i and c_i; "
-      "without set-up that bound holds.",
+      "the trees' benefit. Where trees have set-up, those of a bundle that shares pass their knee together or not at "
+      "all. The bound with set-up known holds for every budget that the trees of a bundle may get, at the price of "
+      "little "
+      "sharing for a small theta; the one from b_i and c_i alone leaves set-up out of account and holds without it.",
       curve.variables, curve.operations));
 }
 
@@ -102,7 +103,7 @@ void reproduce_zach(const ReproduceContext& context, Reproduction& out) {
   out.remarks.push_back(
       "The section on results is missing from the text: budgets are printed, what became of them is not. Held: the "
       "95th percentile at most 10 % over. Figure 4 runs the printed direction (the gradient), theta 5 % of the bound "
-      "from b_i and c_i.");
+      "with set-up known.");
   figure_4(context, out);
   sharing_rows(context, out);
 }

@@ -48,7 +48,8 @@ std::string points(const SharingCurve& curve, std::size_t bound) {
 
 // Curve and points. The thetas stand beside the first and the last curve only: those between lie too close together.
 std::string sharing_curve_script(std::size_t bound) {
-  constexpr std::array<std::string_view, kSharingBounds.size()> kColours = {"#0072B2", "#B8860B", "#CC0000", "#009E73"};
+  constexpr std::array<std::string_view, kSharingBounds.size()> kColours = {"#7B3294", "#0072B2", "#B8860B", "#CC0000",
+                                                                            "#009E73"};
   const std::string name = fmt::format("$bound{}", bound);
   std::string script =
       fmt::format("{} using 1:2 with lines lw 1.6 lc rgb '{}' title {}, \\\n", name, kColours[bound],

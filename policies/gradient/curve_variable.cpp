@@ -26,6 +26,8 @@ Jump hull_jump(const CurveVariable& v) {
 
 }  // namespace
 
+bool has_setup(double setup_s, double rest_s) { return setup_s > kNoSetup * rest_s; }
+
 double cost_s(const CurveVariable& v, double x) {
   if (x <= 0) return 0;
   return x < v.knee ? v.setup_s * (x / v.knee) + v.rest_s * x : v.setup_s + v.rest_s * x;
@@ -48,7 +50,7 @@ void settle(CurveVariable& v) {
   v.cap = 1;
   v.jump_to = 0;
   v.slope_s = v.rest_s;
-  if (v.setup_s <= kNoSetup * v.rest_s) return;
+  if (!has_setup(v.setup_s, v.rest_s)) return;
   const bool below = v.x <= 0 || v.x < v.knee;
   if (!below) return;
   if (v.knee > 0) v.slope_s += v.setup_s / v.knee;

@@ -27,6 +27,9 @@ struct CurveVariable {
   double jump_to = 0;  // and from there jumps to here; 0: it does not
 };
 
+// Is set-up more than an estimator's rounding? Less counts as none.
+bool has_setup(double setup_s, double rest_s);
+
 double cost_s(const CurveVariable& variable, double x);
 double benefit(const CurveVariable& variable, double x);
 // The x in [0,1] that costs `money_s`, 0 if that pays no first primitive.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "policies/gradient/curve_variable.h"
+#include "policies/gradient/shared_worth.h"
 #include "policies/level_rules.h"
 
 namespace framesim {
@@ -15,6 +17,7 @@ void add(NodeSum& sum, const NodeSum& child) {
   sum.benefit += child.benefit;
   sum.cost_s += child.cost_s;
   sum.worth += child.worth;
+  sum.first_worth += child.first_worth;
   sum.setup_s += child.setup_s;
   sum.first_x = std::min(sum.first_x, child.first_x);
   sum.knee = std::min(sum.knee, child.knee);
@@ -28,14 +31,16 @@ NodeSum curve_sum(const Workload& workload, std::size_t item) {
   const double cost_s = workload.cost_s[workload.finest(item)];
   const double benefit = workload.benefit[workload.finest(item)];
   const double setup_s = workload.curve_setup_s[item];
-  return {.curves = 1,
-          .benefit = benefit,
-          .cost_s = cost_s,
-          .worth = benefit * benefit / cost_s,
-          .setup_s = setup_s,
-          .first_x = NodeSums::first_x(workload, item),
-          .knee = setup_s > 0 ? workload.curve_knee[item] : 1,
-          .mixed = workload.type_of(item).shape != CurveShape::square_root};
+  NodeSum sum{.curves = 1,
+              .benefit = benefit,
+              .cost_s = cost_s,
+              .worth = benefit * benefit / cost_s,
+              .setup_s = setup_s,
+              .first_x = NodeSums::first_x(workload, item),
+              .knee = setup_s > 0 ? workload.curve_knee[item] : 1,
+              .mixed = workload.type_of(item).shape != CurveShape::square_root};
+  sum.first_worth = 4 * shared_jump(sum).worth;
+  return sum;
 }
 
 }  // namespace
@@ -52,6 +57,7 @@ double NodeSums::first_x(const Workload& workload, std::size_t item) {
 void NodeSums::build(const Workload& workload, double cull_px) {
   sums_.assign(workload.size(), {});
   allowance_.assign(workload.size(), {});
+  evaluations_ = 0;
   for (std::size_t i = workload.size(); i-- > 0;) {
     NodeSum& sum = sums_[i];
     if (workload.hierarchical()) {
@@ -73,7 +79,11 @@ bool NodeSums::may_share(const Workload& workload, std::size_t item, ShareBound 
   const NodeSum& sum = sums_[item];
   if (sum.mixed) return false;
   if (sum.curves <= 1) return true;
-  if (bound == ShareBound::spread) return 1 - sum.benefit / std::sqrt(sum.cost_s * sum.worth) <= theta;
+  if (bound == ShareBound::exact && has_setup(sum.setup_s, sum.cost_s - sum.setup_s)) {
+    return keeps_enough(workload, item, theta);
+  }
+  if (bound == ShareBound::exact || bound == ShareBound::no_setup)
+    return 1 - sum.benefit / std::sqrt(sum.cost_s * sum.worth) <= theta;
   Allowance& allowance = allowance_[item];
   const double scale = bound == ShareBound::leaves ? sum.benefit : kTreeWeight * workload.projected_area_px[item];
   if (allowance.resolution < 0) {
@@ -89,6 +99,20 @@ bool NodeSums::may_share(const Workload& workload, std::size_t item, ShareBound 
                           : most * (1 - 1 / std::sqrt(two_to_height)) < allowance.loss / two_to_height;
   if (!shares) hand_down(workload, item);
   return shares;
+}
+
+// sum d_i <= A of shared_worth.h, over the curves at and below `item`, as far as needed.
+bool NodeSums::keeps_enough(const Workload& workload, std::size_t item, double theta) {
+  const SharedJump jump = shared_jump(sums_[item]);
+  // No d_i is less than the worth of the first branch: most bundles that lose too much are seen by that.
+  if ((1 - theta) * (1 - theta) * sums_[item].first_worth > 4 * jump.worth) return false;
+  double worth = 0;
+  for (std::size_t i = item; i < workload.subtree_end[item] && worth <= jump.worth; ++i) {
+    if (workload.kind[i] != ItemKind::curve || sums_[i].curves <= 0) continue;
+    worth += most_worth(sums_[i], theta, jump.slope);
+    ++evaluations_;
+  }
+  return worth <= jump.worth;
 }
 
 // X_i = X S_i^4 / sum S_j^4; S^4 is the square of the projected area.

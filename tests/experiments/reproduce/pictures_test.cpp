@@ -46,6 +46,7 @@ TEST_CASE("reproduce pictures: every figure has its curves and its target") {
         CAPTURE(text);
         CHECK(picture.script.find(text) != std::string::npos);
       }
+      CHECK(picture.script.find("rgb ''") == std::string::npos);  // every curve has a colour
       CHECK(picture.script.find("set xlabel") != std::string::npos);
       CHECK(picture.script.find("set ylabel") != std::string::npos);
       ++drawn;
