@@ -48,6 +48,9 @@ build_framesim() {
   shift 2
   if command -v ccache >/dev/null 2>&1; then
     set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
+    # Without these ccache keeps nothing that is compiled with a precompiled header.
+    CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+    export CCACHE_SLOPPINESS
   fi
   mkdir -p "$folder" && cmake -S . -B "$folder" "$@" >"$folder/build.log" 2>&1 &&
     cmake --build "$folder" --target "$target" --parallel "$(processors)" >>"$folder/build.log" 2>&1 && return 0
