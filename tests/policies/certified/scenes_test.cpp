@@ -128,7 +128,7 @@ TEST_CASE("with hysteresis levels switch at most half as often as funkhouser's a
     Endless source(scene, false);
     const bool large = source.scene().instances > 2000;
     if (kSlow && large) continue;
-    const std::int64_t frames = kSlow || large ? 20 : std::min<std::int64_t>(200, source.period());
+    const std::int64_t frames = large ? 20 : std::min<std::int64_t>(200, source.period());
     for (const double target_s : scene.targets_s) {
       const Result greedy = run(scene, source, "funkhouser", target_s, frames, false);
       const Result ours = run(scene, source, "certified:hysteresis=0.2", target_s, frames, false);
