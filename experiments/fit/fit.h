@@ -58,7 +58,8 @@ struct MachineFit {
 //   gpu   = max(draw*draws + polygon*polygons + vertex*vertices + texture_byte*texture_bytes,
 //               clear + pixel*(pixels + pixel_nonlinearity*pixels_squared/2^20)) + swap
 //   frame = max(cpu, gpu) + overlap*min(cpu, gpu), of the measured cpu and gpu where they are there
-// (no area_exponent: what each draw covers is not in the rows). Relative errors are minimised, as noise grows with time. A constant whose column is missing counts as 0.
+// There is no area_exponent in it: what each draw covers is not in the rows. Relative errors are minimised, as noise grows
+// with time. A constant whose column is missing counts as 0.
 struct FrameRow {
   std::vector<double> value;  // by MeasuredColumn
 };

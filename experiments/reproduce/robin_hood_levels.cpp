@@ -11,6 +11,7 @@
 #include "experiments/reproduce/robin_hood.h"
 #include "experiments/stepped_run.h"
 #include "experiments/thread_pool.h"
+#include "policies/shares/instance_value.h"
 #include "scenes/registry.h"
 
 namespace framesim::robin_hood {
@@ -22,19 +23,19 @@ struct Remainders {
   double beyond_finest = 0, unspent = 0;
 };
 
-// Equations 8 and 11, as the policy robin-hood computes them.
-double value_of(const Workload& workload, std::size_t item, bool equation_11) {
-  constexpr double kNear_m = 0.1;
-  const double area = std::max(workload.area_m2[item], 0.0), importance = workload.type_of(item).importance;
-  if (equation_11) return std::sqrt(area) / std::max(workload.distance_m[item], kNear_m) * importance;
-  return area * importance / std::sqrt(std::max(workload.depth_m[item], kNear_m));
+double value_of(const Workload& workload, std::size_t item, InstanceValue equation) {
+  constexpr double kNear_m = 0.1;  // the policy's default
+  // The policy asks for one of the two columns; the other one is empty.
+  const bool by_distance = equation == InstanceValue::equation11;
+  return instance_value(equation, workload.area_m2[item], workload.type_of(item).importance,
+                        by_distance ? 0 : workload.depth_m[item], by_distance ? workload.distance_m[item] : 0, kNear_m);
 }
 
-double beyond_finest(const Workload& workload, double budget_s, bool equation_11) {
+double beyond_finest(const Workload& workload, double budget_s, InstanceValue equation) {
   double total = 0, beyond_s = 0;
-  for (std::size_t i = 0; i < workload.size(); ++i) total += value_of(workload, i, equation_11);
+  for (std::size_t i = 0; i < workload.size(); ++i) total += value_of(workload, i, equation);
   for (std::size_t i = 0; i < workload.size(); ++i) {
-    const double time_s = value_of(workload, i, equation_11) / total * budget_s;
+    const double time_s = value_of(workload, i, equation) / total * budget_s;
     beyond_s += std::max(0.0, time_s - workload.cost_s[workload.finest(i)]);
   }
   return total > 0 && budget_s > 0 ? beyond_s / budget_s : 0;
@@ -47,8 +48,8 @@ Remainders remainders(std::string_view scene, int equation, double target_s) {
   double frames = 0;
   run_stepped(spec, load_scene(spec.scene), [&](const Simulation& simulation, const FrameRecord& record) {
     frames += 1;
-    sum.beyond_finest =
-        std::max(sum.beyond_finest, beyond_finest(simulation.workload(), record.budget_s, equation == 11));
+    const InstanceValue value = equation == 11 ? InstanceValue::equation11 : InstanceValue::equation8;
+    sum.beyond_finest = std::max(sum.beyond_finest, beyond_finest(simulation.workload(), record.budget_s, value));
     sum.unspent += record.budget_s > 0 ? 1 - record.planned_cost_s / record.budget_s : 0;
   });
   constexpr double kDigits = 1e9;  // below them is the rounding of sums

@@ -94,8 +94,8 @@ void sharing_rows(const ReproduceContext& context, Reproduction& out) {
       "run in which no trees share, {:.0f} variables and {:.0f} operations a frame. Theta and losses are shares of "
       "the trees' benefit. Where trees have set-up, those of a bundle that shares pass their knee together or not at "
       "all. The bound with set-up known holds for every budget that the trees of a bundle may get, at the price of "
-      "little "
-      "sharing for a small theta; the one from b_i and c_i alone leaves set-up out of account and holds without it.",
+      "little sharing for a small theta; the one from b_i and c_i alone leaves set-up out of account and holds without "
+      "it.",
       curve.variables, curve.operations));
 }
 
